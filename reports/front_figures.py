@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.tuning import Tuning, front_of, metrics_of, point_of
+from hil.analysis.tuning import Tuning, front_of, metrics_of, point_of, within_hard_limits
 from reports import quantities
 from reports.figure import Figure, Mark, Range, Trace
 from reports.labels import Label
@@ -19,39 +19,40 @@ _ROOM = 0.08  # of what is shown, on either side
 
 
 def front_figures(found: Tuning) -> tuple[Figure, ...]:
-    """The second metric and the largest sensitivity over the first metric; empty with one metric alone."""
+    """Second metric and response time over the first metric; empty with one metric alone."""
     criteria = found.trial.driven.criteria
     metrics = metrics_of(criteria)
     best = front_of(found.archive, criteria)
-    every = [point for tried in found.archive if tried.feasible and (point := point_of(tried, criteria))]
+    every = [point for one in found.archive if within_hard_limits(one) and (point := point_of(one, criteria))]
     if len(metrics) < 2 or not best:
         return ()
     units = {criterion.metric.name: criterion.metric.unit for criterion in criteria}
-    axes = [(name.replace("_", " ").capitalize(), units[name]) for name in metrics] + [("|S|max", "")]
+    axes = [(name.replace("_", " ").capitalize(), units[name]) for name in metrics] + [("Response time", "s")]
     named = [(one.name, point.figures) for one in found.shown if (point := point_of(one.nominal, criteria))]
     clouds = (np.array([p.figures for p in every]), np.array([p.figures for p in best]))
-    return tuple(_figure(axes[0], axes[column], column, clouds, named) for column in (1, 2))
+    return tuple(_figure(axes, pair, clouds, named) for pair in ((0, 1), (0, 2), (1, 2)))
 
 
 def _figure(
-    across: tuple[str, str],
-    upwards: tuple[str, str],
-    column: int,
+    axes: Sequence[tuple[str, str]],
+    pair: tuple[int, int],
     clouds: tuple[Array, Array],
     named: Sequence[tuple[str, Sequence[float]]],
 ) -> Figure:
     every, best = clouds
+    x, y = pair
+    across, upwards = axes[x], axes[y]
     traces = [
-        Trace(Label("candidates"), every[:, 0], every[:, column], "reference", points=True),
-        Trace(Label("Pareto front"), best[:, 0], best[:, column], "fourth", points=True),
+        Trace(Label("candidates"), every[:, x], every[:, y], "reference", points=True),
+        Trace(Label("Pareto front"), best[:, x], best[:, y], "fourth", points=True),
     ]
     marks = []
     for (name, point), role in zip(named, _ROLES, strict=False):
-        where = f"{_value(point[0], across[1])}, {_value(point[column], upwards[1])}"
-        marks.append(Mark(point[0], point[column], f"{name}: {where}", role))
-    shown = np.vstack([best[:, [0, column]], *([[p[0], p[column]]] for _, p in named)])
+        where = f"{_value(point[x], across[1])}, {_value(point[y], upwards[1])}"
+        marks.append(Mark(point[x], point[y], f"{name}: {where}", role))
+    shown = np.vstack([best[:, [x, y]], *([[p[x], p[y]]] for _, p in named)])
     return Figure(
-        id=f"front-{column}",
+        id=f"front-{y}" if x == 0 else f"front-{x}-{y}",
         title=Label(f"{upwards[0]} over {across[0].lower()}"),
         x_text=across[0],
         x_unit=across[1],

@@ -16,7 +16,7 @@ from reports.figure import Level
 from reports.front_figures import front_figures
 from reports.labels import Label, criterion_title
 from reports.origin import Origin
-from reports.outputs.tuning import verdict
+from reports.outputs.tuning import verdict, worse_in_words
 from reports.overlay_figures import overlay
 from reports.parts import Cell, Map, Page, Part, Table
 from test_plans.criteria import Criterion
@@ -112,6 +112,7 @@ def _limit(criterion: Criterion) -> str:
 
 def _parts(found: Tuning, runs: Sequence[Shown], origin: Origin) -> list[Part]:
     parts = [
+        Part("kept", "Compared with the start", _kept_text(found), (_kept(found),)),
         Part("margins", "Margins", _margins_text(found), (_margins(found),)),
         Part("limits", "Hard limits", _limits_text(found), (_limits(found),)),
         Part("parameters", "Parameters", "", (_parameters(found),)),
@@ -121,7 +122,8 @@ def _parts(found: Tuning, runs: Sequence[Shown], origin: Origin) -> list[Part]:
     if drawn:
         words = (
             "Largest values over the driven segments, nominal model, of every candidate within the hard "
-            "limits. Pareto front: candidates that no other beats in all three figures."
+            "limits, also of those that are slower than is allowed. Pareto front: candidates that no other "
+            "beats in peak, band energy and response time at once."
         )
         parts.append(Part("front", "Trade-off", words, figures=drawn))
     if found.sensitivities:
@@ -219,6 +221,34 @@ def _margin(one: Standing, id_: str) -> str:
     return f"{least} ({quantities.share(own)})"
 
 
+def _kept_text(found: Tuning) -> str:
+    return " ".join(line.strip() for line in worse_in_words(found)[:1]).capitalize().rstrip(":") + "."
+
+
+def _kept(found: Tuning) -> Table:
+    """What must not get worse, what is worse first."""
+    shares = {one.words: one for one in found.worse}
+    rows = []
+    for kept, start in found.start.nominal.figures.items():
+        value = found.chosen.nominal.figures.get(kept, float("nan"))
+        worst = shares.get(kept.words)
+        rows.append(
+            (
+                -(worst.share if worst else 0.0),
+                (
+                    kept.words,
+                    quantities.number(start),
+                    quantities.number(value),
+                    quantities.unit(kept.unit),
+                    quantities.share(worst.share) if worst else "not worse",
+                ),
+            )
+        )
+    rows.sort(key=lambda row: row[0])
+    head = ("figure", "start", "tuned", "unit", "worse by, at most on any vehicle")
+    return Table(head, tuple(row for _, row in rows), 1)
+
+
 def _limits_text(found: Tuning) -> str:
     count = len(found.trial.draws)
     cars = "nominal model" if count == 1 else f"least over the nominal model and {count - 1} sampled vehicles"
@@ -228,7 +258,7 @@ def _limits_text(found: Tuning) -> str:
 def _limits(found: Tuning) -> Table:
     names = tuple(one.name for one in found.shown)
     rows = []
-    for name in found.chosen.nominal.limits:
+    for name in (one for one in found.chosen.nominal.limits if not one.startswith("keep.")):
         cells = (
             quantities.share(min(t.limits.get(name, float("nan")) for t in one.tried)) for one in found.shown
         )

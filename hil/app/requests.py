@@ -134,6 +134,7 @@ class SearchRequest:
         controller: the plan's name for the controller that is tuned; '' for the last one.
         start: controller file to start from; None for the plan's own.
         draws: cars sampled around the model.
+        may_worsen: what may get worse than with the start (KEPT of hil.analysis.tuning), beside the file's.
     """
 
     plan: str
@@ -144,6 +145,7 @@ class SearchRequest:
     start: Path | None = None
     draws: int = 0
     seed: int = 0
+    may_worsen: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,7 +12,7 @@ from hil.app.worker.lean_imports import import_python_can
 from hil.cli._completion import shipped_bench, shipped_model
 from hil.cli.commands._options import Operator, OverwriteResult, PlanName, found_model
 
-SEVERAL = ("--envelope",)
+SEVERAL = ("--envelope", "--may-worsen")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,6 +65,14 @@ class Tune:
         ),
     ] = 0
     seed: Annotated[int, typer.Option(min=0, help="random seed of sampling and search")] = 0
+    may_worsen: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME",
+            help="let this get worse than with the initial controller by more than 5 %: response_time, "
+            "steady_error, torque_effort, stability, criteria",
+        ),
+    ] = None
     starts: Annotated[
         int,
         typer.Option(min=0, max=1000, help="number of additional starting points of the optimiser"),
