@@ -68,6 +68,14 @@ class Jerk(WindowMetric):
 
     def compute(self, recording: Recording, segment: Segment) -> float:
         """Largest magnitude; NoValueError where V̂ moves in too large steps to be differentiated twice."""
+        return abs(self.largest(recording, segment)[1])
+
+    def largest(self, recording: Recording, segment: Segment) -> tuple[float, float]:
+        """Time after the step (s) and value (m/s³, signed) of the largest jerk.
+
+        Raises:
+            NoValueError: as `compute`.
+        """
         start_s, end_s = self.bounds_s(recording, segment)
         later_s = min(segment.end_s, end_s + _AROUND / self.low_pass_hz)  # the filter needs what follows
         time, values = cut(
@@ -79,10 +87,10 @@ class Jerk(WindowMetric):
         jerk = self._differentiated(even, spacing_s) * self._scale(segment)
         grid = time[0] + spacing_s * np.arange(len(even))
         inside = (grid >= start_s - 0.5 * spacing_s) & (grid <= end_s + 0.5 * spacing_s)
-        found = float(np.max(np.abs(jerk[inside])))
+        place = int(np.argmax(np.where(inside, np.abs(jerk), -1.0)))
         if self.mass_kg is None:
-            self._refuse_coarse(values, spacing_s, found)
-        return found
+            self._refuse_coarse(values, spacing_s, abs(float(jerk[place])))
+        return float(grid[place] - segment.step_s), float(jerk[place])
 
     def _differentiated(self, values: Array, spacing_s: float) -> Array:
         """Of the speed twice, of the torque once; of the shape of `values`, 0 at both ends."""
