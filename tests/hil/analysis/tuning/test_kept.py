@@ -10,9 +10,9 @@ from hil.analysis.tuning._kept import kept_of_run, room, worse_of
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
 from hil.core.result import Segment
-from tests.hil.analysis.tuning.trials import FREE, trial_of
+from tests.hil.analysis.tuning.trials import FREE, LET_GO, PLAN, trial_of
 
-KEEPING = FREE.replace(FREE[FREE.index("[keep]") : FREE.index("[tolerance]")], "")
+KEEPING = FREE.replace(LET_GO, "")
 EFFORT = Effort(starts=1, far=4, near=2, joins=2, joining=1)
 LATE, MARGIN = Kept("response_time", "s"), Kept("phase_margin_deg")
 
@@ -66,15 +66,9 @@ def test_what_is_let_go_is_no_limit(name):
 
 def test_a_criterion_may_be_traded_on_a_car_on_which_the_start_fails():
     """Where something fails, margin elsewhere is what it is bought with."""
-    failing = trial_of(KEEPING, plan_text=_stricter())
+    failing = trial_of(KEEPING, plan_text=PLAN.replace("upper: 400", "upper: 300"))
     assert failing.tried({}, 0).worst < 0
     assert not any(".criteria." in name for name in failing.tried({"feed_forward_time_s": 0.06}, 0).limits)
-
-
-def _stricter() -> str:
-    from tests.hil.analysis.tuning.trials import PLAN
-
-    return PLAN.replace("upper: 400", "upper: 300")
 
 
 def test_room_is_what_is_left_of_the_share_in_the_direction_that_is_worse():
