@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.compiled import compiled
-from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock, most_frame_bits
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, FrameBlock, most_frame_bits
+from hil.core.runtime.compiled import compiled
 
 _UNSTUFFED = 13  # CRC delimiter, acknowledge slot and delimiter, end of frame (7), intermission (3)
 _POLYNOMIAL, _CRC_BITS = 0x4599, 15

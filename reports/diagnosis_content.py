@@ -16,8 +16,8 @@ from hil.analysis.diagnosis import (
     why_no_step,
 )
 from hil.core.channels import OUTPUTS
-from hil.core.digits import multiple, share
 from hil.core.effects import EFFECTS
+from hil.core.errors.digits import multiple, share
 from hil.core.model import parameter_unit
 from reports import quantities
 from reports.diagnosis_figures import WINDOW_S, overlay_figures, shown_overlay

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import difflib
 import importlib
-from types import ModuleType
-from typing import Any, Protocol
+from typing import Any
 
+from hil.app.worker.lean_imports import import_python_can
+from hil.cli import options
 from hil.core.errors import BadInputError
 
-#: Name and line of each command, by the topic under which `hil --help` has it. The module
-#: hil.cli.commands.NAME (_ for - and for a blank) is imported when it is used.
+#: Name and line of each command, by the topic under which `hil --help` has it. Its options
+#: are the class NAME of hil.cli.options; what it does is the module hil.cli.commands.NAME (_ for a blank).
 TOPICS: dict[str, dict[str, str]] = {
     "Runs": {
         "run": "Run a test plan on a bench and write its report.",
@@ -74,31 +75,27 @@ RENAMED = {
 }
 
 
-class Command(Protocol):
-    """Options of a command, and what it does with them. Documented by its class, as `--help` shows it."""
-
-    def __init__(self, **options: Any) -> None: ...
-
-    def carry_out(self) -> int:
-        """Carry the command out; its exit code."""
-        ...
-
-
 def command_names() -> list[str]:
     """All commands, those of a group with its name: "bench doctor"."""
     top = [name for commands in TOPICS.values() for name in commands if name not in GROUPS]
     return [*top, *(f"{group} {name}" for group, commands in GROUPS.items() for name in commands)]
 
 
-def module_of(name: str) -> ModuleType:
-    """The module of a command."""
-    return importlib.import_module(f"hil.cli.commands.{name.replace('-', '_').replace(' ', '_')}")
-
-
-def command_of(name: str) -> type[Command]:
-    """The class of a command, named as it is: BenchDoctor of `bench doctor`. Its fields are the options."""
-    found: type[Command] = getattr(module_of(name), name.title().replace("-", "").replace(" ", ""))
+def options_of(name: str) -> type[Any]:
+    """The class of a command's options, named as it is (BenchDoctor); `--help` shows its docstring."""
+    found: type[Any] = getattr(options, name.title().replace("-", "").replace(" ", ""))
     return found
+
+
+def execute(name: str, chosen: object) -> int:
+    """Execute a command; its exit code."""
+    import_python_can()
+    code: int = importlib.import_module(f"hil.cli.commands.{_module_name(name)}").execute(chosen)
+    return code
+
+
+def _module_name(name: str) -> str:
+    return name.replace("-", "_").replace(" ", "_")
 
 
 def taken_apart(arguments: list[str]) -> tuple[str, list[str]]:

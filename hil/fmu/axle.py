@@ -8,11 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers import parameters_of
+from hil.core.can.signals import Signal
 from hil.core.controller import Controller
 from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError
 from hil.core.model import Model, refuse_without_vehicle
-from hil.core.signals import Signal
 from hil.plant.closed_loop import SIDES, ClosedLoop, Wire
 from hil.plant.closed_loop import drive as D
 from hil.plant.closed_loop import tick as T

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
-from hil.core.compiled import compiled, inlined
+from hil.core.runtime.compiled import compiled, inlined
 from hil.plant import _equations as E
 from hil.plant import _laws as L
 from hil.plant import _slots as P
@@ -158,7 +158,7 @@ def outputs(x, memories, p, slewed, coupled, load, row):  # type: ignore[no-unty
 def initial_state(p, motor_speed, wheel_speed, shaft_torque, motor_torque, wheel_angle):  # type: ignore[no-untyped-def]
     """State and memories that show the given speeds (rad/s) and torques (N m), the road coupling at rest."""
     chain = chain_of(p)
-    memories, twist = L.begun(shaft_torque, chain, p)
+    memories, twist = L.initial(shaft_torque, chain, p)
     memories = L.turned(motor_speed, chain, memories, p)
     if chain.kind != P.RIGID:
         twist += shaft_torque / chain.shaft_stiffness

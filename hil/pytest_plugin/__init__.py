@@ -66,7 +66,7 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> PlanFile |
 class Ran:
     """A run that has ended: what was judged, and where its recording and reports are.
 
-    `trouble` is what the command said if the bench failed.
+    `trouble` is what the command printed if the bench failed.
     """
 
     result: RunResult
@@ -109,7 +109,7 @@ class PytestBench:
         self._folders, self._beside, self._properties = folders, beside, properties
 
     def run(self, plan: str | Path, *, variables: Mapping[str, float] | None = None, **options: str) -> Ran:
-        """Carry out a plan as `hil run` does; criteria stand among the test's JUnit properties.
+        """Execute a plan as `hil run` does; criteria stand among the test's JUnit properties.
 
         Args:
             plan: a file, relative to the test's, or the name of a built-in plan.
@@ -175,14 +175,14 @@ class PlanFile(pytest.File):
 
     @property
     def bench(self) -> str:
-        """Where it is carried out."""
+        """Where it is executed."""
         found = _bench_for(self.config, self.path.parent)
         assert found is not None
         return found
 
     @cached_property
     def ran(self) -> Ran | Exception:
-        """The run, carried out when the first of the tests asks for it."""
+        """The run, executed when the first of the tests asks for it."""
         out, overwrite = self.config.getoption("--bench-out"), self.config.getoption("--bench-overwrite")
         if out:
             folder = Folders(Path(out).absolute(), overwrite=overwrite).next(folder_name(self.nodeid))
@@ -207,7 +207,7 @@ class PlanItem(pytest.Item):
         ran = self.parent.ran
         if isinstance(ran, Exception):
             if self.name != "run":
-                pytest.skip("the plan was not carried out")
+                pytest.skip("the plan was not executed")
             raise ran
         if self.name in ("run", "safe_state"):
             self.user_properties += _properties(ran)
@@ -220,11 +220,11 @@ class PlanItem(pytest.Item):
         if _is_bad(criterion) and criterion.verdict != "not_judged":
             definition = f"\n{criterion.definition}" if criterion.definition else ""
             raise AssertionError(f"{_in_words(criterion)}{definition}\nin {ran.folder}")
-        if criterion.verdict != "pass":  # nothing was demanded, or its segment was not carried out
+        if criterion.verdict != "pass":  # nothing was demanded, or its segment was not executed
             pytest.skip(_in_words(criterion))
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:
-        """The message alone: where in this file it was raised helps nobody."""
+        """The message alone: where in this file it was raised helps no one."""
         from hil.core.errors import HilError
 
         if isinstance(excinfo.value, AssertionError | HilError):
@@ -241,16 +241,16 @@ def _bench_for(config: pytest.Config, folder: Path) -> str | None:
     given = config.getoption("--bench")
     if given:
         return _placed(given, config.invocation_params.dir)
-    told = config.getini("hil_bench")
-    if told:
-        return _placed(told, config.inipath.parent if config.inipath else config.rootpath)
+    setting = config.getini("hil_bench")
+    if setting:
+        return _placed(setting, config.inipath.parent if config.inipath else config.rootpath)
     own = (place / _BENCH for place in (folder, config.invocation_params.dir))
     return next((str(file) for file in own if file.is_file()), None)
 
 
 def _refuse_unnamed_hardware(config: pytest.Config, found: str) -> None:
     """Raises:
-    BadInputError: a bench.toml that nobody has named describes hardware.
+    BadInputError: a bench.toml that no one has named describes hardware.
     """
     if not config.getoption("--bench") and not config.getini("hil_bench"):
         from hil.engine.bench.found_bench import refuse_hardware

@@ -19,7 +19,7 @@ from hil.analysis.tuning import (
     within_hard_limits,
 )
 from hil.core.controller import Controller, controller_to_toml
-from hil.core.digits import share
+from hil.core.errors.digits import share
 from hil.core.result import Segment
 from reports import drawings
 
@@ -71,7 +71,7 @@ def _front_picture(found: Tuning) -> dict[str, bytes] | None:
 def summary_of(
     found: Tuning, segments: tuple[Segment, ...], asked: Mapping[str, Any], files: list[str]
 ) -> dict[str, Any]:
-    """The content of `tune.json`; `asked` is what the command was told."""
+    """The content of `tune.json`; `asked` are the options of the command."""
     trial, worst = found.trial, found.chosen.worst
     return {
         "worse": [asdict(one) for one in found.worse],

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, FrameBlock
 
 _LOOPBACK = "127.0.0.1"
 _READ = 65536

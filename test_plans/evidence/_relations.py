@@ -86,7 +86,7 @@ class Relation:
         return (self.channel, *self.against)
 
     def objection(self, means: Means, short: Means) -> str:
-        """How the channel contradicts its neighbours; '' where it agrees, or where nothing can be said.
+        """How the channel contradicts its neighbours; '' where it agrees, or where nothing can be stated.
 
         Args:
             means: over half a second each.
@@ -104,7 +104,7 @@ class Relation:
         return "" if self.shaken[0] <= slope <= self.shaken[1] else self._in_words(slope, self.shaken)
 
     def proves(self, means: Means, short: Means) -> bool:
-        """Whether anything can be said."""
+        """Whether anything can be stated."""
         if self._pairs(means, self.least) is not None:
             return True
         return self.shaken is not None and self._pairs(short, _SHORT_LEAST * self.least) is not None
@@ -181,7 +181,7 @@ _TWISTS_RAD_S = 0.4  # a shaft that twists by 0.1 rad within a mean, and comes b
 
 _SENSOR = "a sensor is dead, scaled or mirrored"
 
-#: Sides first: what they tell explains what is told of both.
+#: Sides first: what they show explains what both show.
 RELATIONS = (
     Relation(
         "wheel_speed_left_rad_s",

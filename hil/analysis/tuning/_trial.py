@@ -128,7 +128,7 @@ class Trial:
     start: Controller
     draws: tuple[Draw, ...]
     loops: SpeedLoops
-    carry_out: CarryOut
+    execute: CarryOut
     _known: dict[int, Tried] = field(default_factory=dict, repr=False, compare=False)
 
     def controller(self, values: Mapping[str, float], name: str = "tuned") -> Controller:
@@ -150,7 +150,7 @@ class Trial:
         if not loop.stable or min(hard.values(), default=0.0) < 0.0:
             return Tried(values, number, loop, limits, figures=figures)
         try:
-            found = self.carry_out(draw.model, controller, draw.noise, draw.seed)
+            found = self.execute(draw.model, controller, draw.noise, draw.seed)
         except HilError as error:
             return Tried(values, number, loop, limits, trouble=str(error), figures=figures)
         limits |= self._run_limits(found)

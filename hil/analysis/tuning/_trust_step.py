@@ -64,7 +64,7 @@ class TrustStep:
         criteria = [criterion.id for criterion in trial.driven.criteria]
         ascent = Ascent(tried_on, criteria, trial.limits)
         try:
-            ascent.carry_out((centre.point - low) / (high - low), _RADIUS, _SHORTEST, _ROUNDS)
+            ascent.execute((centre.point - low) / (high - low), _RADIUS, _SHORTEST, _ROUNDS)
         except _StoppedError:
             return centre
         better = [one for one in seen if one.corrected.score > centre.corrected.score]

@@ -139,7 +139,7 @@ def tune(
         search = Search(
             pool, space, space.point(values_of(trial.start)), seed, effort or Effort(), show, stopped
         )
-        search.carry_out()
+        search.execute()
         show("comparing", None)
         if search.ended == "stopped":
             trial, chosen, start = _stopped(pool, search, space)

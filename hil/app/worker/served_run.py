@@ -90,7 +90,7 @@ class _Service(LoggedFeedback):
         logger.warning(text)
 
     def ask_name(self, question: str, given: str) -> str:
-        """Nobody is asked here."""
+        """No one is asked here."""
         del question
         return given
 
@@ -100,10 +100,12 @@ class _Service(LoggedFeedback):
 
 
 def main() -> None:
-    """Carry out the run that is asked for on standard input, and exit with the code that `hil run` has."""
+    """Execute the run that is asked for on standard input, and exit with the code that `hil run` has."""
     INTERRUPTS.raise_from_now_on()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    os.environ.setdefault("PYTHONWARNINGS", "ignore")  # of processes begun by this one; here the log has them
+    os.environ.setdefault(
+        "PYTHONWARNINGS", "ignore"
+    )  # of processes started by this one; here the log has them
     reading, writing = os.dup(0), os.dup(1)
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(2, 1)  # what a library prints is no message
@@ -122,7 +124,7 @@ def main() -> None:
     try:
         request = service.request()
         if request is not None:
-            code = _carry_out(request, service, pipe)
+            code = _execute(request, service, pipe)
     except HilError as error:
         code = error.exit_code
         pipe.send(Refused(error=ErrorData.of(error)))
@@ -141,7 +143,7 @@ def main() -> None:
 
 
 def _stop_line() -> IpcPipe | None:
-    """Only read from; nobody else has this end of it."""
+    """Only read from; no one else has this end of it."""
     from hil.engine.ipc.ipc_pipe import IpcPipe
 
     if len(sys.argv) < 3:
@@ -151,7 +153,7 @@ def _stop_line() -> IpcPipe | None:
     return IpcPipe(line, line)
 
 
-def _carry_out(asked: RunAsked, service: _Service, pipe: IpcPipe) -> int:
+def _execute(asked: RunAsked, service: _Service, pipe: IpcPipe) -> int:
     from hil.app.log import LOG
     from hil.app.run import RunSettings
     from hil.engine.ipc.ipc_data import ended_of, request_of
@@ -170,7 +172,7 @@ def _carry_out(asked: RunAsked, service: _Service, pipe: IpcPipe) -> int:
         feedback=service,
         stops=request.stops,
     )
-    with settings.carry_out(request.plan, request.bench, out) as run:
+    with settings.execute(request.plan, request.bench, out) as run:
         outcome = run.outcome
         outcome.result = run.result
         pipe.send(ended_of(outcome))

@@ -11,19 +11,19 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock
 from hil.core.errors import BadInputError
-from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock
 
-#: What no recording has a place for; names as users are told them.
+#: What no recording has a place for; names as users see them.
 REMOTE, LONG = "remote frames", "CAN FD frames of more than 8 bytes"
 IMPOSSIBLE = "frames with an identifier or a stamp that none can have"
 SHORT = "frames with fewer bytes than they say"
 LONGEST_DATA = 8
 
 
-#: What stamps that go back mean: nobody says, what follows was recorded later, or was written out of order.
+#: What stamps that go back mean: no one says, what follows was recorded later, or was written out of order.
 Stamps = Literal["", "append", "sort"]
-_UNREMARKABLE_S = 10.0  # that frames were sorted which stand so close need not be said
+_UNREMARKABLE_S = 10.0  # that frames were sorted which stand so close need not be stated
 _LATE_S = 0.1  # by which a frame may stand behind newer ones
 
 
@@ -54,7 +54,7 @@ class LogClock:
         """What was done, a sentence each.
 
         Raises:
-            BadInputError: stamps go back, and nobody has said what that means.
+            BadInputError: stamps go back, and no option states what that means.
         """
         if not self._backs or (self._stamps == "sort" and self._back_s < _UNREMARKABLE_S):
             return []

@@ -40,7 +40,7 @@ Force = Callable[[Motion, Chain, float, Values], float]
 
 @dataclass(frozen=True)
 class Law:
-    """Where an effect acts and how; what is None it leaves alone. Torques in N m, wheel side where not said.
+    """Where an effect acts and how; what is None it leaves alone. Torques in N m, wheel side unless stated.
 
     Args:
         chain: changes the linear numbers (a dict of `Chain`'s fields) by the effect's values.
@@ -88,7 +88,7 @@ class Law:
 
     @property
     def compiled(self) -> bool:
-        """Whether the kernels carry it out, rather than the chain or a sensor."""
+        """Whether the kernels execute it, rather than the chain or a sensor."""
         return any(
             function is not None
             for function in (

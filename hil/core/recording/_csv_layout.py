@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from hil.core.channels import CHANNELS, TIME
-from hil.core.finding_list import repeated
+from hil.core.errors.wording import repeated
 from hil.core.units import Conversion, UnitError, conversion, has_unit, is_spelled
 
 #: Spellings of time's unit, and how many of it are a second.

@@ -242,7 +242,7 @@ class _Table:
         return {column: np.array(values, np.float64) for column, values in read.items()}
 
     def _number(self, cell: str, column: int, line: int) -> float | None:
-        """The cell's value, NaN if it is missing, None if it is text in a column that nobody needs."""
+        """The cell's value, NaN if it is missing, None if it is text in a column that no one needs."""
         if cell in _MISSING:
             return math.nan
         name = self._header[column]

@@ -60,7 +60,7 @@ class PredictedLoop:
         return self.closed.rows[last - 1 : last]
 
     def run_for(self, duration_s: float, until: Callable[[], bool] = lambda: False) -> bool:  # noqa: ARG002
-        """Let time pass; nobody holds a prediction."""
+        """Let time pass; no one holds a prediction."""
         self.run(round(duration_s / TICK_S))
         return True
 
@@ -99,7 +99,7 @@ class PredictedRmcu:
 
     @property
     def state(self) -> str:
-        """What the RMCU said last."""
+        """The RMCU's last status."""
         return _STATES[int(self._loop.newest[0, T.STATE])]
 
     def is_safe(self) -> bool:
@@ -179,7 +179,7 @@ class PredictedDyno:
         self._see_status()
 
     def hold_speed(self, speed_rad_s: float) -> None:
-        """Ramp both wheels to a speed; returns when both drives have been told."""
+        """Ramp both wheels to a speed; returns when both drives have been reported."""
         closed = self._loop.closed
         for side in SIDES:
             closed.drive_mode(side, D.SPEED)

@@ -40,7 +40,7 @@ logger = logging.getLogger(__name__)
 
 
 def hold_hardware(pipe: IpcPipe) -> str:
-    """Carry out the run that is asked for at the other end; what nobody there has heard of how it ended.
+    """Execute the run that is asked for at the other end; what no one there has heard of how it ended.
 
     Asking to stop counts as often as signals came here or the command tells of, whichever is more: a terminal
     or a service manager may tell both.
@@ -97,7 +97,7 @@ class _Command:
         return found
 
     def turned(self) -> str:
-        """Say that the loop has turned, and take what the command has said."""
+        """Report that the loop has turned, and take what the command has sent."""
         self._pipe.send_if_idle(Turned())
         for message in self._pipe.fetch():
             self._take(message)
@@ -112,7 +112,7 @@ class _Command:
         self._pipe.send(Concluded(armed=armed, unsafe=tuple(unsafe)))
 
     def progress(self, share: float, text: str) -> None:
-        """Say how far the run is, unless nobody listens."""
+        """Say how far the run is, unless no one listens."""
         if not self._pipe.crowded:
             self._pipe.send(Progressed(share=share, text=text))
 
@@ -144,7 +144,7 @@ class _LogLines(logging.Handler):
         self._pipe = pipe
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Send it, unless nobody listens."""
+        """Send it, unless no one listens."""
         if self._pipe.crowded:
             return
         trace = logging.Formatter().formatException(record.exc_info) if record.exc_info else ""

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.can.dbc_messages import keys_of
+from hil.core.can.frames import ERROR_FRAME, FrameBlock
 from hil.core.can_logs import CanLog
-from hil.core.dbc_messages import keys_of
-from hil.core.frames import ERROR_FRAME, FrameBlock
 
 _MOST_NAMED = 8
 _EXTENDED_BIT = 1 << 31

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.can.dbc_messages import MessageLayout, MessageSamples, decoded, read_messages_of
+from hil.core.can.frames import FrameBlock
 from hil.core.channels import TIME
-from hil.core.dbc_messages import MessageLayout, MessageSamples, decoded, read_messages_of
 from hil.core.errors import BadInputError
-from hil.core.frames import FrameBlock
 from hil.core.recording import RecordingWriter
 from hil.engine.bench.device_kinds import descriptions_of
 from hil.engine.replay._channels import Frames, listed

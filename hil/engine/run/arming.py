@@ -87,7 +87,7 @@ class Arming:
                 raise BenchError(text, where=f"interlock '{reached.name}'", fix=reached.message)
 
     def _refuse_torque(self) -> None:
-        """No drive is enabled before the RMCU has said, in frames that can be believed, that it is off."""
+        """No drive is enabled before the RMCU has reported, in sound frames, that it is off."""
         rmcu = self._bench.rmcu
         if not self._bench.loop.wait_for(rmcu.is_safe, rmcu.safe_within_s):
             why = "; ".join(rmcu.troubles()) or f"state '{rmcu.state}'"
@@ -130,8 +130,8 @@ class Arming:
         found = [identities_of(key, tables[key], device) for key, device in bench.devices_by_key.items()]
         self.identities = tuple(identity for several in found for identity in several)
         bench.loop.wait_for(lambda: clock.now_s() > began_s + _LISTEN_S - 0.5 * TICK_S, _LISTEN_S)
-        said = {f"{i.device}: {i.name}": i.value for i in self.identities if i.value}
-        self._recorder.writer.describe("identification", said)
+        identified = {f"{i.device}: {i.name}": i.value for i in self.identities if i.value}
+        self._recorder.writer.describe("identification", identified)
 
     def _event(self, kind: str, text: str) -> None:
         self._recorder.event(self._bench.loop.clock.now_s(), kind, text)

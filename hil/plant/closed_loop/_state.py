@@ -72,7 +72,7 @@ class State:
         wheel_radius_m: float | None = None,
         initial_speed_m_s: float | None = None,
     ) -> None:
-        """Change what the drives' vehicle model is told; None leaves a value as it is."""
+        """Change what the drives' vehicle model is set to; None leaves a value as it is."""
         for array, index, value in (
             (self.vector, P.VEHICLE_INERTIA, inertia_kg_m2),
             (self.vector, _ROLLING, rolling_nm),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from hil.core.compiled import compiled
+from hil.core.runtime.compiled import compiled
 from hil.plant import _kernel as K
 from hil.plant import _slots as P
 from hil.plant import _states as X

@@ -77,7 +77,7 @@ def test_they_stand_in_the_order_in_which_they_act():
 
 @every
 def test_kin_are_effects(effect: Effect):
-    assert set(effect.kin) <= set(EFFECTS) - {effect.id}
+    assert set(effect.similar) <= set(EFFECTS) - {effect.id}
 
 
 @every
