@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from hil.core.channels import TIME
-from hil.core.compiled import compiled
 from hil.core.recording import Recording
 from hil.core.result import Segment
+from hil.core.runtime.compiled import compiled
 from test_plans.metrics._low_pass import low_passed
 from test_plans.metrics._metric import NoValueError
 from test_plans.metrics._orders import orders_removed

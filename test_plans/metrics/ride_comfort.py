@@ -6,9 +6,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from hil.core.compiled import compiled
 from hil.core.recording import Recording
 from hil.core.result import Segment
+from hil.core.runtime.compiled import compiled
 from test_plans.conductor import Array
 from test_plans.metrics._metric import ChannelName, NoValueError
 from test_plans.metrics._periodogram import periodogram

@@ -28,9 +28,9 @@ from hil.app.tuning.confirmation import Ran, as_json
 from hil.app.tuning.refinement import Refined
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import did_you_mean
 from hil.core.files.toml_file import toml_text
 from hil.core.model import load_model
-from hil.core.errors.wording import did_you_mean
 from hil.engine import BenchFile, load_bench
 from hil.engine.prediction.batch_prediction import BatchPrediction
 from reports import HTML, PDF

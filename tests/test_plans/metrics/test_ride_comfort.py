@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -127,8 +127,8 @@ def test_scipy_filters_the_same_dose():
         ([middle, middle**2], [1, middle / 0.63, middle**2]),
     ):
         b, a = np.polymul(b, above), np.polymul(a, below)
-    analogue: Any = signal.tf2zpk(b, a)
-    zpk: Any = signal.bilinear_zpk(*analogue, fs=1000)
+    zeros, poles, gain = cast("tuple[Any, Any, Any]", signal.tf2zpk(b, a))
+    zpk: Any = signal.bilinear_zpk(zeros, poles, gain, fs=1000)
     segment = Segment(id="s", start_s=0.0, step_s=0.0, end_s=21.0)
     weighted = signal.sosfilt(signal.zpk2sos(*zpk), speed - speed[0])
     wanted = (np.sum(weighted**4) / 1000) ** 0.25

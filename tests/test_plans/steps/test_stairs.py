@@ -30,7 +30,7 @@ def test_a_driver_who_changes_their_mind_holds_the_middle_level_shortly() -> Non
     conductor = NoteTaker()
     keys = {"levels_nm": [300, -150, 300], "hold_s": 0.2, "first_s": 2, "last_s": 3}
     stairs = step_of("stairs", segment="back", quantity="driving_torque", **keys)
-    stairs.carry_out(conductor)
+    stairs.execute(conductor)
     _, samples, segment = conductor.played[0]
     assert_array_equal(samples[[0, 1999, 2000, 2199, 2200, 5199]], [300, 300, -150, -150, 300, 300])
     assert segment is not None

@@ -1,6 +1,7 @@
 """What a tuning keeps: nobody asked for it in the plan, and it must not be paid with."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -99,7 +100,7 @@ def test_figures_of_a_step_down_are_those_of_its_closed_form():
     torque = -150.0 + 450.0 * np.exp(-since / 0.1)
     request = np.where(time >= 1.0, 2.0 * np.exp(-since / 0.5), 0.0)
     recording = Recording(
-        {"time_s": time, "shaft_torque_nm": torque, "motor_torque_ref_nm": request}, source=None
+        {"time_s": time, "shaft_torque_nm": torque, "motor_torque_ref_nm": request}, source=Path("made.mcap")
     )
     segment = Segment(
         id="s", start_s=0.0, step_s=1.0, end_s=6.0, quantity="driving_torque",
