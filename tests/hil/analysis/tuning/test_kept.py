@@ -121,3 +121,14 @@ def test_what_is_unknown_is_refused():
         trial_of(KEEPING + '[keep]\nmay_worsen = ["speed"]\n')
     with pytest.raises(BadInputError, match="share_percent"):
         trial_of(KEEPING + "[keep]\nshare_percent = -1\n")
+
+
+def test_what_a_car_left_out_forbids_is_backed_off_from_towards_the_start():
+    """One round and no car that joins: what was found on the model itself is beyond a limit on others."""
+    trial = trial_of(KEEPING.replace("dead_time_s = 0.001", "dead_time_s = 0.003"), draws=6)
+    alone = Effort(starts=0, far=3, near=1, joins=0, joining=1)
+    found = tune(trial, seed=1, effort=alone, processes=1)
+    assert all(tried.feasible for tried in found.chosen.tried)
+    nominal = tune(trial_of(KEEPING), seed=1, effort=alone, processes=1)
+    assert any(not trial.tried(nominal.chosen.values, car).feasible for car in range(7))
+    assert found.chosen.worst.worst >= found.start.worst.worst
