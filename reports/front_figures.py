@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,7 @@ from reports.labels import Label
 Array = npt.NDArray[np.float64]
 
 _ROLES = ("gain", "phase", "third", "fifth")  # as in the responses
+_SIGHT = 1.5  # times the largest of the named: what lies farther would flatten the rest
 _ROOM = 0.08  # of what is shown, on either side
 
 
@@ -30,7 +32,16 @@ def front_figures(found: Tuning) -> tuple[Figure, ...]:
     axes = [(name.replace("_", " ").capitalize(), units[name]) for name in metrics] + [("Response time", "s")]
     named = [(one.name, point.figures) for one in found.shown if (point := point_of(one.nominal, criteria))]
     clouds = (np.array([p.figures for p in every]), np.array([p.figures for p in best]))
-    return tuple(_figure(axes, pair, clouds, named) for pair in ((0, 1), (0, 2), (1, 2)))
+    return tuple(
+        replace(_figure(axes, pair, clouds, named), wide=pair == (1, 2)) for pair in ((0, 1), (0, 2), (1, 2))
+    )
+
+
+def within_sight(points: Array, named: Sequence[Sequence[float]]) -> npt.NDArray[np.bool_]:
+    """Which points, shape (n, 3), lie so near to named ones that a picture may reach to them: (n,)."""
+    if not len(named):
+        return np.ones(len(points), bool)
+    return np.asarray(np.all(points <= _SIGHT * np.max(np.array(named), axis=0), axis=1))
 
 
 def _figure(
@@ -50,7 +61,8 @@ def _figure(
     for (name, point), role in zip(named, _ROLES, strict=False):
         where = f"{_value(point[x], across[1])}, {_value(point[y], upwards[1])}"
         marks.append(Mark(point[x], point[y], f"{name}: {where}", role))
-    shown = np.vstack([best[:, [x, y]], *([[p[x], p[y]]] for _, p in named)])
+    near = best[within_sight(best, [point for _, point in named])]
+    shown = np.vstack([near[:, [x, y]], *([[p[x], p[y]]] for _, p in named)])
     return Figure(
         id=f"front-{y}" if x == 0 else f"front-{x}-{y}",
         title=Label(f"{upwards[0]} over {across[0].lower()}"),

@@ -60,7 +60,11 @@ def tuning_page(
         tone="pass" if worst.worst >= 0 else "fail",
         lead=_in_titles(verdict(found), found),
         notes=tuple(notes),
-        parts=(*_confirmed(confirmed), *_parts(found, runs, origin)),
+        parts=(
+            Part("kept", "Compared with the start", _kept_text(found), (_kept(found),)),
+            *_confirmed(confirmed),
+            *_parts(found, runs, origin),
+        ),
         mark=origin.mark,
         first=_first(found, runs),
     )
@@ -112,7 +116,6 @@ def _limit(criterion: Criterion) -> str:
 
 def _parts(found: Tuning, runs: Sequence[Shown], origin: Origin) -> list[Part]:
     parts = [
-        Part("kept", "Compared with the start", _kept_text(found), (_kept(found),)),
         Part("margins", "Margins", _margins_text(found), (_margins(found),)),
         Part("limits", "Hard limits", _limits_text(found), (_limits(found),)),
         Part("parameters", "Parameters", "", (_parameters(found),)),
@@ -228,7 +231,21 @@ def _kept_text(found: Tuning) -> str:
 def _kept(found: Tuning) -> Table:
     """What must not get worse, what is worse first."""
     shares = {one.words: one for one in found.worse}
-    rows = []
+    known = {kept.words for kept in found.start.nominal.figures}
+    rows = [
+        (
+            -1.0 - one.share,
+            (
+                one.words,
+                quantities.number(one.start),
+                quantities.number(one.value),
+                quantities.unit(one.unit),
+                quantities.share(one.share),
+            ),
+        )
+        for one in found.worse
+        if one.words not in known
+    ]
     for kept, start in found.start.nominal.figures.items():
         value = found.chosen.nominal.figures.get(kept, float("nan"))
         worst = shares.get(kept.words)
