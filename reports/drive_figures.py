@@ -36,7 +36,7 @@ def drive_section(recording: Recording, segments: Iterable[Segment], criteria: C
     wanted = [one for one in segments if one.id in asked and one.quantity == "driving_torque"]
     drawn, missing = [], []
     for segment in _paired(wanted)[: 2 * _MOST_PAIRS]:
-        figure = drive_figure(recording, segment)
+        figure = drive_figure(recording, segment, criteria)
         if figure is None:
             missing.append(Label(segment.id))
         else:
@@ -46,8 +46,13 @@ def drive_section(recording: Recording, segments: Iterable[Segment], criteria: C
     return Section("drive", "Tip-in and tip-out", _TEXT, tuple(drawn), not_drawn(missing))
 
 
-def drive_figure(recording: Recording, segment: Segment) -> Figure | None:
-    """T_s and its reference around one step; None where T_s has no values."""
+def drive_figure(recording: Recording, segment: Segment, criteria: Criteria | None = None) -> Figure | None:
+    """T_s and its reference around one step; None where T_s has no values.
+
+    Args:
+        criteria: whose values stand in the marks, where a criterion of the segment has them.
+    """
+    known = criteria or {}
     label = channel_label(_SHAFT_TORQUE)
     end_s = min(segment.end_s, segment.step_s + TO_S)
     start_s = max(segment.start_s, segment.step_s + FROM_S)
@@ -60,8 +65,8 @@ def drive_figure(recording: Recording, segment: Segment) -> Figure | None:
     if torque is None:
         return None
     reference = drawn(_REQUEST, Label("Reference"), "reference", "dash")
-    bands, marks = _play(recording, segment)
-    jerk = _jerk(recording, segment, torque)
+    bands, marks = _play(recording, segment, known)
+    jerk = _jerk(recording, segment, torque, known)
     marks += [jerk] if jerk is not None else []
     return Figure(
         id=f"drive-{segment.id}",
@@ -92,7 +97,7 @@ def _paired(segments: list[Segment]) -> list[Segment]:
     return [*pairs, *alone]
 
 
-def _play(recording: Recording, segment: Segment) -> tuple[list[Band], list[Mark]]:
+def _play(recording: Recording, segment: Segment, criteria: Criteria) -> tuple[list[Band], list[Mark]]:
     """Passages through the play as bands, and where each ends as a mark with the rate that follows."""
     try:
         found = TimeInPlay().contacts(recording, segment)
@@ -107,35 +112,45 @@ def _play(recording: Recording, segment: Segment) -> tuple[list[Band], list[Mark
         if one.left_s is not None:
             length = quantities.quantity(1000 * (one.contact_s - one.left_s), "ms", significant=3)
             bands.append(Band(one.left_s - segment.step_s, at_s, length))
-        words = "contact" if marks else _contact(recording, segment)
+        words = "contact" if marks else _contact(recording, segment, criteria)
         marks.append(Mark(at_s, _value(recording, one.contact_s), words, "fourth"))
     longest = max(bands, key=lambda band: band.end - band.start, default=None)
     return [band if band is longest else replace(band, label="") for band in bands], marks
 
 
-def _contact(recording: Recording, segment: Segment) -> str:
+def _contact(recording: Recording, segment: Segment, criteria: Criteria) -> str:
     """The figures of all contacts, which stand at the first."""
     try:
-        rate = Clunk().compute(recording, segment)
+        rate = _judged(criteria, segment, Clunk.name)
+        rate = Clunk().compute(recording, segment) if rate is None else rate
         text = f"contact, clunk {quantities.quantity(rate, 'N m/s', significant=3)}"
     except (NoValueError, HilError):
         return "contact"
     try:
-        energy = ContactEnergy().compute(recording, segment)
+        energy = _judged(criteria, segment, ContactEnergy.name)
+        energy = ContactEnergy().compute(recording, segment) if energy is None else energy
     except (NoValueError, HilError):
         return text
     return f"{text}, {quantities.quantity(energy, 'J', significant=3)}"
 
 
-def _jerk(recording: Recording, segment: Segment, torque: Trace) -> Mark | None:
+def _jerk(recording: Recording, segment: Segment, torque: Trace, criteria: Criteria) -> Mark | None:
     try:
         after_s, value = Jerk().largest(recording, segment)
     except (NoValueError, HilError):
         return None
     if after_s > TO_S:
         return None
-    words = f"largest jerk {quantities.quantity(abs(value), 'm/s³', significant=3)}"
+    judged = _judged(criteria, segment, Jerk.name)
+    shown = abs(value) if judged is None else judged
+    words = f"largest jerk {quantities.quantity(shown, 'm/s³', significant=3)}"
     return Mark(after_s, float(np.interp(after_s, torque.x, torque.y)), words, "third")
+
+
+def _judged(criteria: Criteria, segment: Segment, metric: str) -> float | None:
+    """A criterion's value: one number in table and figure."""
+    criterion = criteria.get(f"{segment.id}.{metric}")
+    return None if criterion is None else criterion.value
 
 
 def _value(recording: Recording, at_s: float) -> float:

@@ -100,6 +100,17 @@ def test_of_several_passages_the_longest_has_its_length_beside_it() -> None:
     assert svg_figure(figure).count(b"<svg") == 1
 
 
+def test_a_number_that_a_criterion_has_is_that_of_the_criterion() -> None:
+    recording, segments = recorded()
+    known = {
+        f"tip_in.{name}": CriterionResult(id=f"tip_in.{name}", value=value, unit="", verdict="pass")
+        for name, value in (("jerk", 4.321), ("clunk", 1234.0), ("contact_energy", 5.678))
+    }
+    figure = drive_figure(recording, segments[0], known)
+    assert figure is not None
+    assert all(number in figure.caption for number in ("4.32", "1234", "5.68"))
+
+
 def test_a_plan_that_asks_for_none_of_it_has_no_such_section() -> None:
     recording, segments = recorded()
     assert drive_section(recording, segments, criteria("tip_in.peak_shaft_torque")) is None
