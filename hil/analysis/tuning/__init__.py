@@ -13,7 +13,7 @@ from hil.analysis.tuning._free import (
     shipped_free,
 )
 from hil.analysis.tuning._front import Point, front_of, metrics_of, point_of, within_hard_limits
-from hil.analysis.tuning._kept import KEPT, Kept, Worse
+from hil.analysis.tuning._kept import KEPT, Kept, Worse, worse_of
 from hil.analysis.tuning._loops import SpeedLoops
 from hil.analysis.tuning._parameters import ALTERNATIVES, PARAMETERS, Space, values_of, with_values
 from hil.analysis.tuning._pool import Pool
@@ -72,4 +72,5 @@ __all__ = [
     "values_of",
     "with_values",
     "within_hard_limits",
+    "worse_of",
 ]
