@@ -225,7 +225,9 @@ def _margin(one: Standing, id_: str) -> str:
 
 
 def _kept_text(found: Tuning) -> str:
-    return " ".join(line.strip() for line in worse_in_words(found)[:1]).capitalize().rstrip(":") + "."
+    first = worse_in_words(found)[0].rstrip(":")
+    held = f" Held by what is kept: {', '.join(found.held_by)}." if found.held_by else ""
+    return f"{first[0].upper()}{first[1:]}.{held}"
 
 
 def _kept(found: Tuning) -> Table:

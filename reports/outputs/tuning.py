@@ -75,6 +75,7 @@ def summary_of(
     trial, worst = found.trial, found.chosen.worst
     return {
         "worse": [asdict(one) for one in found.worse],
+        "held_by": list(found.held_by),
         **asked,
         "in_place_of": trial.driven.file.stem,
         "segments": list(trial.driven.segments),
@@ -179,6 +180,9 @@ def text_of(found: Tuning, out: str) -> str:
     own = values_of(found.trial.start)
     for name, value in found.chosen.values.items():
         lines.append(f"{name:<22}{value:>12.5g}   (was {own[name]:.5g})")
+    if found.held_by:
+        held = ", ".join(found.held_by)
+        lines += ["", f"Held by what is kept: {held}. More margin may be had with --may-worsen NAME."]
     lines += ["", verdict(found), f"{found.runs} predicted runs, search {found.ended}; written to {out}"]
     return "\n".join(lines)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.tuning._kept import Worse, worse_of
+from hil.analysis.tuning._kept import CRITERIA, KEPT, Worse, worse_of
 from hil.analysis.tuning._parameters import Space, values_of
 from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._search import Effort, Search
@@ -22,6 +22,7 @@ Array = npt.NDArray[np.float64]
 
 #: Step of the sensitivities, as a share of a parameter's range.
 SENSITIVITY_STEP = 0.02
+_NO_ROOM = 0.004  # of the share that is kept: the search comes no nearer
 _SAME_MARGIN = 0.01  # % of a limit
 _PAPER_LEAD = {"lead_deg": 36.0, "lead_hz": 40.0}
 _PAPER_NOTCH = {"notch_hz": 10.6, "notch_width": 2.0, "notch_depth": 0.08}
@@ -99,6 +100,18 @@ class Tuning:
             if start - own > _SAME_MARGIN:
                 found.append(Worse(f"margin, {id_}", "%", start, own, (start - own) / 100, car))
         return tuple(sorted(found, key=lambda one: -one.share))
+
+    @property
+    def held_by(self) -> tuple[str, ...]:
+        """Of what is kept, that which has no more room on some car: a search with it let go may gain more."""
+        groups = {one.limit: one.group for one in self.trial.kept}
+        least: dict[str, float] = {}
+        for tried in self.chosen.tried:
+            for name, room in tried.limits.items():
+                if name.startswith("keep."):
+                    group = groups.get(name, CRITERIA)
+                    least[group] = min(room, least.get(group, np.inf))
+        return tuple(name for name in KEPT if least.get(name, np.inf) < _NO_ROOM)
 
     @property
     def worst_figure(self) -> Worse:

@@ -23,6 +23,8 @@ def test_by_default_nothing_gets_worse_by_more_than_five_percent_and_margin_is_g
     found = tune(trial, seed=1, effort=EFFORT, processes=1)
     start, own = found.start.nominal, found.chosen.nominal
     assert own.worst > start.worst
+    assert set(found.held_by) <= set(KEPT)
+    assert found.held_by  # otherwise there would have been more to gain
     assert {one.group for one in start.figures} == set(KEPT) - {"criteria"}
     for one, value in own.figures.items():
         assert one.worse_by(start.figures[one], value) <= 0.05 + 1e-9, one.words
@@ -36,6 +38,7 @@ def test_without_it_the_same_search_pays_with_time():
     assert free.chosen.nominal.figures[late] > 1.05 * free.start.nominal.figures[late]
     assert kept.chosen.nominal.figures[late] <= 1.05 * kept.start.nominal.figures[late]
     assert not free.better_in_every_criterion
+    assert free.held_by == ()
     assert late.words in {one.words for one in free.worse}
     shares = [one.share for one in free.worse if one.words.startswith("margin")] or [
         one.share for one in free.worse
