@@ -16,11 +16,11 @@ from collections import deque
 from collections.abc import Sequence
 from pathlib import Path
 
+from hil.core.conventions import PACKAGES
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable
 from hil.core.files import of_the_system, refuse_special
 
-_PACKAGES = ("hil", "drivers", "sim_backend", "test_plans", "reports")
 _HEAD = "# log of hil"
 _LINES_KEPT = 2000
 _LONGEST_LINE = 2000
@@ -51,7 +51,7 @@ class Log:
         logging.raiseExceptions = False  # a log that cannot be written must not cost a run its output
         self._recent = _Recent()
         self._file, self.verbose = None, False
-        for name in _PACKAGES:
+        for name in PACKAGES:
             logging.getLogger(name).setLevel(logging.DEBUG)
         self._add(self._recent, logging.DEBUG)
         logging.captureWarnings(capture=True)  # what libraries warn of is for the log

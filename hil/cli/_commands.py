@@ -7,11 +7,11 @@ import importlib
 from typing import Any
 
 from hil.app.worker.lean_imports import import_python_can
-from hil.cli import options
+from hil.cli.options import benches, controllers, files, models, runs
 from hil.core.errors import BadInputError
 
 #: Name and line of each command, by the topic under which `hil --help` has it. Its options
-#: are the class NAME of hil.cli.options; what it does is the module hil.cli.commands.NAME (_ for a blank).
+#: are the class NAME in a module of hil.cli.options, its work is hil.cli.commands.NAME (_ for a blank).
 TOPICS: dict[str, dict[str, str]] = {
     "Runs": {
         "run": "Run a test plan on a bench and write its report.",
@@ -44,6 +44,7 @@ TOPICS: dict[str, dict[str, str]] = {
         "schema": "Print the JSON schema of plan, bench, model, controller or campaign files.",
     },
 }
+_OPTIONS = (runs, models, controllers, benches, files)
 #: Commands of a group.
 GROUPS: dict[str, dict[str, str]] = {
     "bench": {
@@ -83,7 +84,8 @@ def command_names() -> list[str]:
 
 def options_of(name: str) -> type[Any]:
     """The class of a command's options, named as it is (BenchDoctor); `--help` shows its docstring."""
-    found: type[Any] = getattr(options, name.title().replace("-", "").replace(" ", ""))
+    wanted = name.title().replace("-", "").replace(" ", "")
+    found: type[Any] = next(vars(topic)[wanted] for topic in _OPTIONS if wanted in vars(topic))
     return found
 
 

@@ -250,6 +250,7 @@ class SimulatedBench:
         advance(
             first,
             self._plant.x,
+            self._plant.form,
             self._plant.vector,
             self._plant.scalars,
             self._plant.torques,

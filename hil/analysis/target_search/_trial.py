@@ -22,7 +22,7 @@ from test_plans import Plan, judge
 SETTLED_UNTIL_S = 4.0
 SETTLED_SHARE = 0.05
 _SHAFT_TORQUE = "shaft_torque_nm"
-_BAND_HZ = (0.05, 30.0)
+BAND_HZ = (0.05, 30.0)
 _FREQUENCIES = 200
 _NO_FIGURES = 1e4  # cost of a guess that gives none, and the most of any: five times a figure
 _MISSED = 10.0  # slope of the cost of a condition that is missed, five times that of one that just holds
@@ -177,7 +177,7 @@ class Trial:
         wanted = self.targets.response
         if wanted is None:
             return {}
-        frequency = np.geomspace(*_BAND_HZ, _FREQUENCIES)
+        frequency = np.geomspace(*BAND_HZ, _FREQUENCIES)
         response = linear_system(model).response(frequency)
         return {
             name: rms_misfit(response[OUTPUTS.index(name)], wanted.functions, name, frequency)

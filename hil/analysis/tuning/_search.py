@@ -18,6 +18,7 @@ from hil.analysis.tuning._ascent import Ascent, scatter, score
 from hil.analysis.tuning._parameters import Space
 from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._trial import Tried
+from hil.analysis.tuning._trust_step import SAME
 from hil.core.errors.digits import share
 
 Array = npt.NDArray[np.float64]
@@ -28,7 +29,6 @@ _SCATTERED = 10  # points for each that is gone uphill from
 _AT_ONCE = 32  # points all over the space between two words about how far it is
 _FAR_SHARE = 0.3  # of the time, when there are draws
 _BACK = (0.98, 0.95, 0.9, 0.8, 0.65, 0.5, 0.3, 0.15, 0.0)  # of the way from the start
-_SAME = 1e-4  # of scores: less than this is no difference
 
 
 @dataclass(frozen=True)
@@ -198,7 +198,7 @@ class Search:
         active = list(self._active)
         while len(active) < len(self._active) + self._effort.joining:
             known = [found[number] for number in active]
-            if score(known) < whole + _SAME:
+            if score(known) < whole + SAME:
                 break
             lowered = [score([*known, one]) for one in found]
             active.append(int(np.argmin(lowered)))

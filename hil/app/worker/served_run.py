@@ -18,14 +18,13 @@ from typing import TYPE_CHECKING
 
 from hil.app.feedback import LoggedFeedback
 from hil.app.interrupts import INTERRUPTS
+from hil.engine.process.hardware_process import ASKED_WITHIN_S, LAST_WORDS_S
 
 if TYPE_CHECKING:
     from hil.app.feedback import Show
     from hil.engine.ipc.ipc_messages import EmergencyAsked, RunAsked
     from hil.engine.ipc.ipc_pipe import IpcPipe
 
-_ASKED_WITHIN_S = 60.0
-_LAST_WORDS_S = 10.0
 LOG_FILE = "log.txt"
 #: Starts it.
 RUNNER = (sys.executable, "-m", "hil.app.worker.served_run")
@@ -44,7 +43,7 @@ class _Service(LoggedFeedback):
         """The run that is asked for; None if the service is gone before it has asked."""
         from hil.engine.ipc.ipc_messages import RunAsked
 
-        until_s = time.monotonic() + _ASKED_WITHIN_S
+        until_s = time.monotonic() + ASKED_WITHIN_S
         while not self._pipe.gone and time.monotonic() < until_s:
             self._pipe.wait(1.0)
             for message in self._pipe.fetch():
@@ -136,7 +135,7 @@ def main() -> None:
         fault = BenchError(what, where=LOG_FILE, fix="please report it with the run's log")
         code = fault.exit_code
         pipe.send(Refused(error=ErrorData.of(fault)))
-    pipe.push_all(_LAST_WORDS_S)
+    pipe.push_all(LAST_WORDS_S)
     INTERRUPTS.ignore_from_now_on()
     LOG.end()
     sys.exit(code)

@@ -9,7 +9,7 @@ import sys
 
 from hil.agent import AgentRequest, work
 from hil.app.interrupts import EXIT_CODE
-from hil.cli.options import BenchAgent
+from hil.cli.options.benches import BenchAgent
 from hil.cli.output import print_json
 from hil.cli.remote_run import TOKEN
 from hil.core.errors import BadInputError

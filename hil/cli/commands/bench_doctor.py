@@ -6,7 +6,7 @@ from rich.console import Console
 from rich.table import Table
 
 from hil.cli.inputs import bench_or_own
-from hil.cli.options import BenchDoctor
+from hil.cli.options.benches import BenchDoctor
 from hil.cli.output import console, plain_table, print_json, progress
 from hil.core.errors.wording import printable
 from hil.engine import StopRequest, load_bench

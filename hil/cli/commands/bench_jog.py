@@ -10,7 +10,7 @@ from rich.table import Table
 
 from hil.app.result_file import to_json
 from hil.app.results_folder import results_in
-from hil.cli.options import BenchJog
+from hil.cli.options.benches import BenchJog
 from hil.cli.output import console, plain_table, print_json, progress
 from hil.cli.streams import complain
 from hil.cli.terminal import operators_terminal

@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from hil.app.interrupts import EXIT_CODE
-from hil.cli.options import BenchMonitor
+from hil.cli.options.benches import BenchMonitor
 from hil.cli.output import console, plain_table, print_json
 from hil.core.errors.wording import printable
 from hil.engine import StopRequest, load_bench

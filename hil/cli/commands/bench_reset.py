@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hil.cli.options import BenchReset
+from hil.cli.options.benches import BenchReset
 from hil.cli.output import console, print_json
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import is_printable, printable, refuse_long

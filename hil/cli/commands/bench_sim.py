@@ -7,7 +7,7 @@ import sys
 from hil.app.interrupts import EXIT_CODE
 from hil.app.results_folder import refuse_file
 from hil.cli.inputs import named_values
-from hil.cli.options import BenchSim
+from hil.cli.options.benches import BenchSim
 from hil.cli.output import print_json
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable

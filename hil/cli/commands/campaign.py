@@ -10,7 +10,7 @@ from hil.app.campaign import CampaignStopped, forecast_campaign, run_campaign
 from hil.app.interrupts import EXIT_CODE, INTERRUPTS
 from hil.app.requests import CampaignRequest
 from hil.cli.inputs import request_of
-from hil.cli.options import Campaign
+from hil.cli.options.controllers import Campaign
 from hil.cli.output import TERMINAL, print_json
 from hil.cli.streams import complain
 from hil.core.errors import BadInputError

@@ -11,7 +11,7 @@ from rich.table import Table
 from hil.app.check import Checked, check_plan
 from hil.app.requests import CheckRequest
 from hil.cli.inputs import bench_or_own, choices_of, request_of
-from hil.cli.options import Check
+from hil.cli.options.runs import Check
 from hil.cli.output import TERMINAL, console, plain_table, print_criteria, print_json, warn
 from hil.core.channels import CHANNELS
 from hil.core.errors.digits import share

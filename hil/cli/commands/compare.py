@@ -8,7 +8,7 @@ from hil.analysis.comparison import Comparison
 from hil.app.compare import HTML, compare_runs
 from hil.app.requests import CompareRequest
 from hil.cli.inputs import request_of
-from hil.cli.options import Compare
+from hil.cli.options.runs import Compare
 from hil.cli.output import TERMINAL, console, plain_table, print_json
 from reports.comparison import lead, value_text
 

@@ -8,7 +8,7 @@ from hil.analysis.control_design import DesignSpec, MarginLimits, Normalisation,
 from hil.app.design import design_controller
 from hil.app.requests import DesignRequest
 from hil.cli.inputs import request_of
-from hil.cli.options import Design
+from hil.cli.options.controllers import Design
 from hil.cli.output import TERMINAL, print_json
 from hil.core.errors import BadInputError
 from reports.outputs.control_design import text_of

@@ -9,13 +9,13 @@ from hil.app.diagnose import FILES, diagnose_recordings
 from hil.app.interrupts import EXIT_CODE
 from hil.app.requests import DiagnoseRequest
 from hil.cli.inputs import named_numbers, request_of
-from hil.cli.options import Diagnose
+from hil.cli.options.models import Diagnose
 from hil.cli.output import TERMINAL, print_json
 from hil.core.errors.digits import factor, share
+from reports.diagnosis_content import MOST_WORSE
 from reports.quantities import chance
 
 _WORTH_A_LINE = 0.02
-_MOST_WORSE = 3
 
 
 def execute(options: Diagnose) -> int:
@@ -68,9 +68,9 @@ def text_of(found: Diagnosis, out: Path) -> str:
             lines.append(f"{name + suffix:<28}{shown}{factor(gap.noises):>13}")
     if found.open_channels and found.verdict == "named":
         lines.append(f"remaining error above noise: {', '.join(found.open_channels)}")
-    lines += [f"made worse: {place}" for place in found.worse[:_MOST_WORSE]]
-    if len(found.worse) > _MOST_WORSE:
-        lines.append(f"made worse: {len(found.worse) - _MOST_WORSE} more, see diagnosis.json")
+    lines += [f"made worse: {place}" for place in found.worse[:MOST_WORSE]]
+    if len(found.worse) > MOST_WORSE:
+        lines.append(f"made worse: {len(found.worse) - MOST_WORSE} more, see diagnosis.json")
     lines += [f"note: {note}" for note in found.notes]
     plans = sorted({a.plan for a in found.alternatives if a.plan and a.plan_text})
     lines += ["", f"written to {out}: {', '.join([*FILES, *plans])}"]

@@ -8,7 +8,7 @@ from typing import Any
 
 from hil.app.results_folder import alone_in, refuse_file, refuse_missing
 from hil.app.run import NAMES
-from hil.cli.options import EvidenceRecover
+from hil.cli.options.files import EvidenceRecover
 from hil.cli.output import console, print_json
 from hil.core.errors import BadInputError
 from hil.core.recording import Missing, Recording, missing_of, read_recording, recover_recording, run_of

@@ -9,7 +9,7 @@ import sys
 from hil.app.result_file import RESULT
 from hil.app.results_folder import alone_in, refuse_missing
 from hil.app.verification import of_run
-from hil.cli.options import EvidenceSign
+from hil.cli.options.files import EvidenceSign
 from hil.cli.output import console, print_json
 from hil.cli.streams import complain
 from hil.core.errors import BadInputError

@@ -16,7 +16,7 @@ from hil.app.verification import (
     of_run,
     of_signatures,
 )
-from hil.cli.options import EvidenceVerify
+from hil.cli.options.files import EvidenceVerify
 from hil.cli.output import console, print_json
 from hil.core.errors import BadInputError
 from hil.core.files.signatures import public_key

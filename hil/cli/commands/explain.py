@@ -9,7 +9,7 @@ from hil.app.explain import HTML, explain_targets
 from hil.app.interrupts import EXIT_CODE, INTERRUPTS
 from hil.app.requests import ExplainRequest
 from hil.cli.inputs import bench_or_own, named_numbers, request_of
-from hil.cli.options import Explain
+from hil.cli.options.models import Explain
 from hil.cli.output import TERMINAL, console, plain_table, print_json
 from reports.target_search import caution
 

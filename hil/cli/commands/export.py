@@ -7,7 +7,7 @@ from pathlib import Path
 from hil.app.feedback import warn_of_damage
 from hil.app.results_folder import refuse_file, results_in
 from hil.app.run_inputs import command_again, inputs_of
-from hil.cli.options import Export
+from hil.cli.options.runs import Export
 from hil.cli.output import TERMINAL, console, print_json, warn
 from hil.core.controller import load_controller
 from hil.core.errors import BadInputError

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hil.app.identify import identify_recordings
 from hil.app.requests import IdentifyRequest
 from hil.cli.inputs import request_of
-from hil.cli.options import Identify
+from hil.cli.options.models import Identify
 from hil.cli.output import TERMINAL, print_json
 from reports.outputs.identification import text_of
 

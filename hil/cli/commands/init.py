@@ -7,7 +7,7 @@ from pathlib import Path
 
 from hil.app.results_folder import results_in
 from hil.app.samples import sample_files
-from hil.cli.options import Init
+from hil.cli.options.files import Init
 from hil.cli.output import print_json, progress
 from hil.core.errors import BadInputError
 from hil.engine.bench.bench_file import DEFAULT_BENCH, shipped

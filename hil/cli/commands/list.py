@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import BaseModel
 from rich.markup import escape
 
-from hil.cli.options import List
+from hil.cli.options.files import List
 from hil.cli.output import console, plain_table, print_json
 from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError

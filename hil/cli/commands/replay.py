@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import cast, get_args
 
 from hil.app.replay import replay_logs
-from hil.cli.options import Replay
+from hil.cli.options.runs import Replay
 from hil.cli.output import TERMINAL, console, count_in_words, print_criteria, print_json
 from hil.cli.streams import complain
 from hil.core.can_logs import Stamps

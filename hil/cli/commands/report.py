@@ -5,7 +5,7 @@ from __future__ import annotations
 from hil.app.report import renew_report
 from hil.app.requests import ReportRequest
 from hil.cli.inputs import request_of
-from hil.cli.options import Report
+from hil.cli.options.runs import Report
 from hil.cli.output import TERMINAL, console, count_in_words, print_criteria, print_json
 from hil.cli.streams import complain
 

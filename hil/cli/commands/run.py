@@ -8,7 +8,7 @@ from pathlib import Path
 from hil.app.run import FinishedRun, RunSettings
 from hil.app.series import announce_series, repeated, run_series
 from hil.cli.inputs import all_choices, bench_or_own
-from hil.cli.options import Run
+from hil.cli.options.runs import Run
 from hil.cli.output import (
     TERMINAL,
     console,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from hil.cli.options import Schema
+from hil.cli.options.files import Schema
 from hil.cli.output import print_json
 from hil.core.controller import controller_schema
 from hil.core.errors import BadInputError

@@ -9,7 +9,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from hil.app.interrupts import EXIT_CODE
-from hil.cli.options import Serve
+from hil.cli.options.benches import Serve
 from hil.cli.output import print_json
 from hil.core.errors import BadInputError
 from hil.engine import StopRequest

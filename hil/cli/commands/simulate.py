@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hil.app.feedback import warn_of_damage
 from hil.app.results_folder import refuse_file
-from hil.cli.options import Simulate
+from hil.cli.options.models import Simulate
 from hil.cli.output import TERMINAL, console, print_json, warn
 from hil.core.model import load_model
 from hil.core.recording import read_recording, write_recording

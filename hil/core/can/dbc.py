@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from cantools.database.can.signal import Signal as DbcSignal
 
 LARGEST_IDENTIFIER = 0x7FF
-_LONGEST_BYTES = 8
+LONGEST_BYTES = 8
 _LONGEST_COUNT = 53  # bits that a float64 holds exactly
 _FIX = "correct the DBC; benches/rmcu.dbc is an example"
 
@@ -230,8 +230,8 @@ def _mistakes(message: Message, needed: Needed) -> Iterator[str]:
     """What makes the message unusable; each text goes on after the message's name."""
     if message.is_extended_frame or message.frame_id > LARGEST_IDENTIFIER:
         yield f": identifier 0x{message.frame_id:X} is extended (29 bits); the bench's frames have 11 bits"
-    if not 0 < message.length <= _LONGEST_BYTES:
-        yield f" has {message.length} bytes; a classic CAN frame has 1 to {_LONGEST_BYTES}"
+    if not 0 < message.length <= LONGEST_BYTES:
+        yield f" has {message.length} bytes; a classic CAN frame has 1 to {LONGEST_BYTES}"
     present = {signal.name: signal for signal in message.signals}
     used = []
     for name in needed.signals:

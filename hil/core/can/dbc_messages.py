@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.can.dbc import described, signal_mistakes
+from hil.core.can.dbc import LONGEST_BYTES, described, signal_mistakes
 from hil.core.can.dbc_text import Ranges
 from hil.core.can.frames import ERROR_FRAME, EXTENDED, FrameBlock
 from hil.core.can.signals import Signal, signal_of
@@ -25,8 +25,7 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
-_LONGEST_BYTES = 8
-_EXTENDED_BIT = 1 << 31
+EXTENDED_BIT = 1 << 31
 _NOT_A_KEY = 0xFFFFFFFF
 
 
@@ -75,7 +74,7 @@ class MessageLayout:
     @property
     def key(self) -> int:
         """Its identifier, one of 29 bits apart from one of 11."""
-        return self.id | (_EXTENDED_BIT if self.extended else 0)
+        return self.id | (EXTENDED_BIT if self.extended else 0)
 
     def unit(self, signal: str) -> str:
         """The unit of a signal."""
@@ -105,7 +104,7 @@ def read_messages_of(path: Path) -> tuple[list[MessageLayout], list[str]]:
     file = described(path)
     remarks = list(file.remarks)
     for message in file.database.messages:
-        if not 0 < message.length <= _LONGEST_BYTES:
+        if not 0 < message.length <= LONGEST_BYTES:
             remarks.append(f"message '{message.name}' has {message.length} bytes: its frames are left out")
             continue
         signals: dict[str, list[Branch]] = {}
@@ -133,7 +132,7 @@ def _selector(
     if not signal.multiplexer_ids or above is None or depth > len(message.signals):
         return None
     own = tuple((value, value) for value in signal.multiplexer_ids)
-    extended = _EXTENDED_BIT if message.is_extended_frame else 0
+    extended = EXTENDED_BIT if message.is_extended_frame else 0
     chosen = ranges.get((message.frame_id | extended, signal.name), own)
     return Selector(signal_of(above), chosen, _selector(above, message, ranges, depth + 1))
 
@@ -141,7 +140,7 @@ def _selector(
 def keys_of(block: FrameBlock) -> npt.NDArray[np.uint32]:
     """By frame the key of a message that it could be of; error frames have no message's key."""
     flags = np.ascontiguousarray(block["flags"])
-    keys = block["id"] | np.where(flags & EXTENDED != 0, np.uint32(_EXTENDED_BIT), np.uint32(0))
+    keys = block["id"] | np.where(flags & EXTENDED != 0, np.uint32(EXTENDED_BIT), np.uint32(0))
     keys[flags & ERROR_FRAME != 0] = np.uint32(_NOT_A_KEY)
     return np.asarray(keys, np.uint32)
 

@@ -20,7 +20,7 @@ ERROR_FRAME = 4
 FrameBlock = npt.NDArray[np.void]
 
 _HEAD_BITS, _EXTENDED_HEAD_BITS = 34, 54  # with the checksum; stuff bits stand among them and the data
-_UNSTUFFED = 13  # CRC delimiter, acknowledge slot and delimiter, end of frame (7), intermission (3)
+UNSTUFFED = 13  # CRC delimiter, acknowledge slot and delimiter, end of frame (7), intermission (3)
 _BETWEEN_STUFF_BITS = 4  # one behind five equal bits, which may begin the next five
 
 
@@ -55,7 +55,7 @@ def frames(
 def most_frame_bits(length, extended):  # type: ignore[no-untyped-def]
     """Bits of a data frame of `length` bytes with as many stuff bits as it may have (ISO 11898-1)."""
     stuffable = (_EXTENDED_HEAD_BITS if extended else _HEAD_BITS) + 8 * length
-    return stuffable + (stuffable - 1) // _BETWEEN_STUFF_BITS + _UNSTUFFED
+    return stuffable + (stuffable - 1) // _BETWEEN_STUFF_BITS + UNSTUFFED
 
 
 def longest_frame_s(length: int, bit_rate: int) -> float:

@@ -10,7 +10,7 @@ from hil.core.effects import EFFECTS, SENSED, Effect
 from hil.core.files.kinds import FORMAT_SCHEMA
 from hil.core.model import LOAD_INPUTS, MODEL_KINDS, WHEEL_RADII_M, parameter_names, parameter_unit
 
-_DRAFT = "https://json-schema.org/draft/2020-12/schema"
+DRAFT = "https://json-schema.org/draft/2020-12/schema"
 _NUMBER = {"type": "number"}
 
 
@@ -22,7 +22,7 @@ def model_schema() -> dict[str, Any]:
     """
     low, high = WHEEL_RADII_M
     return {
-        "$schema": _DRAFT,
+        "$schema": DRAFT,
         "title": "Model file",
         "type": "object",
         "properties": {

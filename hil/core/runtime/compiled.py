@@ -46,6 +46,11 @@ def inlined(function: _F) -> Any:
     return _cached(function, forceinline=True)
 
 
+def chosen_by_type(function: _F) -> Any:
+    """A function with compiled forms of its own, by numba's `overload`, for the types that it is given."""
+    return function
+
+
 def compiled_without_lock(function: _F) -> Any:
     """Compile `function` to run beside other threads: it holds no lock of the interpreter."""
     return _cached(function, nogil=True)

@@ -25,7 +25,7 @@ from hil.engine.bench.device_kinds import device_tables
 DEFAULT_BENCH = "sim"
 
 _FIX = "see docs/how-to/bench-file.md"
-_LOADED = ("text", "source")  # fields of the loaded bench that are no keys of the file
+LOADED = ("text", "source")  # fields of the loaded bench that are no keys of the file
 
 
 def load_bench(name_or_path: str | Path) -> BenchFile:
@@ -52,7 +52,7 @@ def bench_from_dict(data: dict[str, Any], text: str, path: Path) -> BenchFile:
         BadInputError: all that is wrong with it.
     """
     where = printable(path, 200)
-    unknown = [f"{key}: unknown key" for key in _LOADED if key in data]
+    unknown = [f"{key}: unknown key" for key in LOADED if key in data]
     _refuse(where, [*unprintable(data), *unknown], text)
     base = path.resolve().parent
     devices, mistakes = device_tables(data)

@@ -9,6 +9,7 @@ import traceback
 from collections.abc import Sequence
 from pathlib import Path
 
+from hil.core.conventions import PACKAGES
 from hil.core.errors import BenchError, HilError
 from hil.engine.ipc.ipc import analysed_apart
 from hil.engine.ipc.ipc_data import ended_of, request_of
@@ -31,8 +32,7 @@ from hil.engine.process.ending_process import is_ending
 from hil.engine.run.run import run_plan
 from hil.engine.stop.stopping import StopRequest, hear_signals
 
-_PACKAGES = ("hil", "drivers", "sim_backend", "test_plans", "reports")
-_ASKED_WITHIN_S = 60.0
+ASKED_WITHIN_S = 60.0
 #: How long its last words may wait for a command that does not read, s.
 LAST_WORDS_S = 10.0
 
@@ -85,7 +85,7 @@ class _Command:
 
     def asked(self) -> RunAsked | None:
         """The run that is asked for; None if the command is gone before it has asked."""
-        until_s = time.monotonic() + _ASKED_WITHIN_S
+        until_s = time.monotonic() + ASKED_WITHIN_S
         found = None
         while found is None and not self._pipe.gone and time.monotonic() < until_s:
             self._pipe.wait(1.0)
@@ -154,7 +154,7 @@ class _LogLines(logging.Handler):
 
 def _log_to(pipe: IpcPipe) -> None:
     handler = _LogLines(pipe)
-    for name in _PACKAGES:
+    for name in PACKAGES:
         logging.getLogger(name).setLevel(logging.DEBUG)
         logging.getLogger(name).addHandler(handler)
 

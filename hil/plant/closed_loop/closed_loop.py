@@ -146,6 +146,7 @@ class ClosedLoop:
         advance(
             self.samples,
             s.x.copy(),
+            s.form,
             s.vector,
             s.scalars.copy(),
             s.torques.copy(),
@@ -183,6 +184,7 @@ class ClosedLoop:
         advance(
             self.samples,
             s.x,
+            s.form,
             s.vector,
             s.scalars,
             s.torques,

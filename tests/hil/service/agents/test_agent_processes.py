@@ -13,7 +13,7 @@ import pytest
 
 from hil.cli._app import guarded
 from hil.cli.commands.bench_agent import execute
-from hil.cli.options import BenchAgent
+from hil.cli.options.benches import BenchAgent
 from hil.core.errors import BadInputError
 from hil.core.files.locks import lock_on
 from tests.hil.service.served import ASKING, HIL, SHORT, RefusedError, Served, environment_of, served
