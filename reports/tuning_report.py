@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hil.analysis.comparison import ComparedRun
-from hil.analysis.tuning import PARAMETERS, Confirmation, Standing, Tuning, values_of
+from hil.analysis.tuning import PARAMETERS, Confirmation, Standing, Tuning, values_of, within_hard_limits
 from hil.core.recording import Recording
 from hil.core.result import RunResult, Segment
 from reports import quantities
@@ -211,7 +211,7 @@ def _margins(found: Tuning) -> Table:
 
 
 def _worst(one: Standing, found: Tuning) -> str:
-    if not one.worst.feasible:
+    if not all(within_hard_limits(tried) for tried in one.tried):
         return "none"
     return quantities.share(min(one.least_margin(criterion.id) for criterion in found.trial.driven.criteria))
 
