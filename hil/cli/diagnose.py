@@ -7,6 +7,7 @@ from pathlib import Path
 from hil.analysis.diagnosis import INTERRUPTED, Diagnosis
 from hil.app.diagnose import FILES, diagnose_recordings
 from hil.app.interrupts import EXIT_CODE
+from hil.app.reading import reading_in_words
 from hil.app.requests import DiagnoseRequest
 from hil.cli._named_values import named_numbers
 from hil.cli._output import TERMINAL, print_json
@@ -27,6 +28,8 @@ def carry_out(options: Diagnose) -> int:
     if options.json_:
         print_json(outcome.summary)
     else:
+        for line in reading_in_words(outcome.summary["read"]):
+            print(line)
         print(text_of(outcome.found, outcome.folder))
     return EXIT_CODE if outcome.found.unfinished == INTERRUPTED else 0
 

@@ -13,6 +13,7 @@ from hil.cli.commands.replay import Replay
 from hil.core.can_logs import Stamps
 from hil.core.errors import BadInputError
 from hil.core.printable import printable, refuse_long
+from hil.core.recording import column_map
 from hil.engine import load_bench
 from hil.engine.replay import ReplayRequest
 from test_plans import load_plan
@@ -32,6 +33,7 @@ def carry_out(options: Replay) -> int:
                 "samples": replayed.samples,
                 "channels": list(replayed.channels),
                 "remarks": list(replayed.remarks),
+                "columns": dict(replayed.columns),
             }
         )
     else:
@@ -58,6 +60,10 @@ def _request(options: Replay) -> ReplayRequest:
             "decoding needs either --bench or --dbc",
             fix="with a bench file: the axle's channels; with a DBC: its signals under their own names",
         )
+    if options.columns and bench is not None:
+        raise BadInputError(
+            "--columns goes with --dbc", fix="with --bench its file says which signals are which channels"
+        )
     if bus and bench is None:
         raise BadInputError("--bus goes with --bench", fix="with --dbc write --dbc CHANNEL=FILE")
     dbcs = _pairs(options.dbc or [], "--dbc", needs_key=False)
@@ -70,6 +76,7 @@ def _request(options: Replay) -> ReplayRequest:
         segments=options.segments,
         operator=options.operator,
         stamps=_stamps(options.stamps),
+        columns=column_map(options.columns),
     )
 
 

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from hil.cli._completion import shipped_model
-from hil.cli.commands._options import found_model
+from hil.cli.commands._options import Columns, found_model
 
 #: Options that take several values.
 SEVERAL = ("--holdout",)
@@ -69,6 +69,7 @@ class Diagnose:
             help="processor time of the search; then the result so far is reported as unfinished",
         ),
     ] = 10.0
+    columns: Columns = None
     overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier diagnosis in --out")] = (
         False
     )

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from hil.cli.commands._options import JsonObject, OverwriteFile
+from hil.cli.commands._options import Columns, JsonObject, OverwriteFile
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,6 +48,7 @@ class Export:
             "--inputs", help="write plan, bench, model and controllers of the run to the folder --out"
         ),
     ] = False
+    columns: Columns = None
     overwrite: OverwriteFile = False
     as_json: JsonObject = False
 

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from hil.cli.commands._options import Columns
+
 
 @dataclass(frozen=True, kw_only=True)
 class Identify:
@@ -53,6 +55,7 @@ class Identify:
             help="zero-order hold of the input, ms; default: the sample time, at most 1 ms",
         ),
     ] = None
+    columns: Columns = None
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="replace an earlier identification in --out")
     ] = False

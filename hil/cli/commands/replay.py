@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from hil.app.worker.lean_imports import import_python_can
+from hil.cli.commands._options import Columns
 
 SEVERAL = ("--dbc", "--bus")
 
@@ -58,6 +59,7 @@ class Replay:
             "(it was written out of order); default: such a log is refused"
         ),
     ] = ""
+    columns: Columns = None
     operator: Annotated[
         str, typer.Option(help="name of the person who ran the bench; printed in the report")
     ] = ""

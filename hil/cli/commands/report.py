@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from hil.cli.commands._options import Columns
+
 
 @dataclass(frozen=True, kw_only=True)
 class Report:
@@ -21,6 +23,7 @@ class Report:
         Path, typer.Argument(metavar="DIR_OR_RECORDING", help="a run's directory, or a recording")
     ]
     out: Annotated[Path | None, typer.Option(help="where to write; default: beside the recording")] = None
+    columns: Columns = None
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="replace the reports of another recording")
     ] = False

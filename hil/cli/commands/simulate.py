@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from hil.cli.commands._options import JsonObject, ModelOption, OverwriteFile
+from hil.cli.commands._options import Columns, JsonObject, ModelOption, OverwriteFile
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,6 +21,7 @@ class Simulate:
     model: ModelOption
     source: Annotated[Path, typer.Option("--input", help="recording with motor_torque_ref_nm")]
     out: Annotated[Path, typer.Option(help="file to write: .csv, .parquet, .mf4 or .mat")]
+    columns: Columns = None
     overwrite: OverwriteFile = False
     as_json: JsonObject = False
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -14,7 +15,7 @@ from hil.core.channels import TIME
 from hil.core.dbc_messages import MessageLayout, MessageSamples, decoded, read_messages_of
 from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock
-from hil.core.recording import RecordingWriter
+from hil.core.recording import AS_NAMED, ColumnMap, RecordingWriter, assigned_signals
 from hil.engine.bench.device_kinds import descriptions_of
 from hil.engine.replay._channels import Frames, listed
 
@@ -28,15 +29,19 @@ class DbcDecoder:
 
     Args:
         dbcs: file by channel of the logs; under '' the one for all others.
+        columns: which signals are which channels.
 
     Raises:
         BadInputError: a DBC that cannot be used, a channel that is not there, or no frame that is known.
 
     Attributes:
         short: frames that end before a signal that should be in them.
+        understood: by channel of `columns`, JSON of the signal and how it was converted.
     """
 
-    def __init__(self, frames: Frames, dbcs: Mapping[str, Path]) -> None:
+    def __init__(self, frames: Frames, dbcs: Mapping[str, Path], columns: ColumnMap = AS_NAMED) -> None:
+        self._map = columns
+        self.understood: dict[str, str] = {}
         self.remarks: list[str] = []
         self.attachments: dict[str, bytes] = {}
         self.units: dict[str, str] = {}
@@ -90,6 +95,7 @@ class DbcDecoder:
             columns[name], missed = _placed(rows_s, samples.time_s, samples.values[signal])
             beside += missed
             self.units[name] = samples.layout.unit(signal)
+        columns = self._as_channels(columns)
         if beside:
             self.remarks.append(
                 f"{beside} samples were discarded: none of the rows is near, or another sample is nearer"
@@ -99,6 +105,15 @@ class DbcDecoder:
         writer.row_0_s = float(rows_s[0])
         self._fill(writer, columns, rows_s)
         return writer
+
+    def _as_channels(self, columns: dict[str, Array]) -> dict[str, Array]:
+        """Signals that the map names, under their channels' names and in their units."""
+        if not self._map:
+            return columns
+        found, self.units, understood, notes = assigned_signals(columns, self.units, self._map)
+        self.understood = {name: json.dumps(entry) for name, entry in understood.items()}
+        self.remarks += notes
+        return found
 
     def _fill(self, writer: RecordingWriter, columns: dict[str, Array], rows_s: Array) -> None:
         """Frames and rows by turns, so that messages are in order of time."""

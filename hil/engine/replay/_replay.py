@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from hil.core.can_logs import CanLog, Stamps, read_can_log
 from hil.core.clock import utc
 from hil.core.errors import BadInputError
 from hil.core.files import replacing, sha256_of
-from hil.core.recording import REPLAY, Recording, RecordingWriter, read_as_written
+from hil.core.recording import AS_NAMED, REPLAY, ColumnMap, Recording, RecordingWriter, read_as_written
 from hil.core.result import RunResult, Segment, verdict_of
 from hil.core.versions import versions
 from hil.engine.bench.bench_tables import BenchFile
@@ -37,6 +39,7 @@ class ReplayRequest:
         buses: by bus of the bench file, the log's channel.
         segments: where the plan's segments lie: a recording of the run, or JSON.
         stamps: what it means that stamps of a log go back.
+        columns: which signals of a DBC are which channels.
     """
 
     logs: Sequence[Path]
@@ -47,6 +50,7 @@ class ReplayRequest:
     segments: Path | None = None
     operator: str = ""
     stamps: Stamps = ""
+    columns: ColumnMap = AS_NAMED
 
 
 @dataclass(frozen=True)
@@ -58,6 +62,7 @@ class Replayed:
     counts: FrameCounts
     samples: int
     channels: tuple[str, ...]
+    columns: Mapping[str, Any]
 
 
 def replay(request: ReplayRequest, path: Path, show: Callable[[str], None] = lambda text: None) -> Replayed:
@@ -91,7 +96,8 @@ def replay(request: ReplayRequest, path: Path, show: Callable[[str], None] = lam
             result = result.model_copy(update={"started_at": utc(written.row_0_ns)})
         _describe(written, request, decoder, logs, frames, remarks, result, counts)
     channels = tuple(written.recording.channels)
-    return Replayed(result, tuple(remarks), counts, len(written.recording.time_s), channels)
+    columns = {name: json.loads(text) for name, text in getattr(decoder, "understood", {}).items()}
+    return Replayed(result, tuple(remarks), counts, len(written.recording.time_s), channels, columns)
 
 
 def _segments(request: ReplayRequest) -> Segments | None:
@@ -108,7 +114,7 @@ def _segments(request: ReplayRequest) -> Segments | None:
 def _decoder(request: ReplayRequest, frames: Frames) -> tuple[BenchDecoder | DbcDecoder, list[str]]:
     bench = request.bench
     if bench is None:
-        return DbcDecoder(frames, request.dbcs), []
+        return DbcDecoder(frames, request.dbcs, request.columns), []
     known = {bus: known_identifiers(bench, bus) for bus in bench.buses}
     names = {bus: {bus, str(table.channel)} for bus, table in bench.buses.items()}
     chosen, lines, channels = chosen_buses(frames, known, names, request.buses)
@@ -220,6 +226,8 @@ def _describe(
     )
     if isinstance(decoder, DbcDecoder):
         writer.describe("units", decoder.units)
+        if decoder.understood:
+            writer.describe("columns", decoder.understood)
     if bench is not None:
         writer.describe("dut", bench.dut)
         writer.describe("report", bench.report.model_dump())
