@@ -12,7 +12,7 @@ import numpy as np
 from hil.core.channels import CHANNELS, TIME, unit_of
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
-from hil.core.recording._column_map import AS_NAMED, OPTION, ColumnMap, Source, wanted_unit
+from hil.core.recording._column_map import AS_NAMED, OPTION, ColumnMap, Source, fix_of, wanted_unit
 from hil.core.recording._table import Array
 from hil.core.suggestion import closest
 from hil.core.units import UnitError, conversion, has_unit
@@ -48,16 +48,16 @@ class Assigned:
             BadInputError: the unit cannot be converted.
         """
         source = self.columns.sources.get(channel)
+        unit = unit or self.units.get(channel, "")
         if source is None and (channel not in CHANNELS or not has_unit(unit)):
             return values
         chosen = source or Source(channel)
-        given = chosen.unit or (unit if has_unit(unit) else self.units.get(channel, ""))
+        given = chosen.unit or unit
         wanted = wanted_unit(channel, chosen)
         try:
             found = conversion(given, wanted) if has_unit(given) else conversion(wanted, wanted)
         except UnitError as error:
-            fix = "write derivative=true for a position" if self._is_position(given, wanted) else error.fix
-            raise BadInputError(error.what, where=where, fix=fix) from None
+            raise BadInputError(error.what, where=where, fix=fix_of(given, wanted, error)) from None
         if source is None:
             if not found.is_none:
                 self.notes.append(f"'{channel}' was converted from {_bare(given)} to {wanted}")
@@ -71,16 +71,6 @@ class Assigned:
         values = found.of(values) * (source.sign * _past_gear(channel, source.gear))
         self._understand(channel, source, given, unit, wanted)
         return values
-
-    @staticmethod
-    def _is_position(given: str, wanted: str) -> bool:
-        if not wanted.endswith("/s"):
-            return False
-        try:
-            conversion(given, wanted.removesuffix("/s"))
-        except UnitError:
-            return False
-        return True
 
     def _understand(self, channel: str, source: Source, given: str, in_file: str, wanted: str) -> None:
         entry = source.as_json()

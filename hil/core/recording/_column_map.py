@@ -8,6 +8,7 @@ sign = -1
 
 from __future__ import annotations
 
+import contextlib
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -227,7 +228,17 @@ def _refuse_unit(channel: str, source: Source) -> None:
     try:
         conversion(source.unit, wanted_unit(channel, source))
     except UnitError as error:
-        raise BadInputError(f"'{channel}' {error.what}", fix=error.fix) from None
+        fix = fix_of(source.unit, wanted_unit(channel, source), error)
+        raise BadInputError(f"'{channel}' {error.what}", fix=fix) from None
+
+
+def fix_of(unit: str, wanted: str, error: UnitError) -> str:
+    """What to do about a unit that does not become another; a position may give a speed."""
+    if wanted.endswith("/s"):
+        with contextlib.suppress(UnitError):
+            conversion(unit, wanted.removesuffix("/s"))
+            return "if it is a position, write derivative=true"
+    return error.fix
 
 
 def wanted_unit(channel: str, source: Source) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
+from dataclasses import replace
 
 import numpy as np
 import pyarrow as pa
@@ -28,6 +29,14 @@ def columns_at_once(
     block: bytes, layout: Layout, wanted: Collection[int], lines: int
 ) -> dict[int, Array] | None:
     """Columns of a block by their numbers; None if anything in it needs a closer look."""
+    before = replace(layout.stamps) if layout.stamps is not None else None
+    read = _at_once(block, layout, wanted, lines)
+    if read is None:
+        layout.stamps = before  # as if the block had not been looked at
+    return read
+
+
+def _at_once(block: bytes, layout: Layout, wanted: Collection[int], lines: int) -> dict[int, Array] | None:
     names = [str(column) for column in wanted]
     time = str(layout.names.index(TIME)) if layout.stamps is not None else ""
     try:

@@ -10,13 +10,18 @@ from hil.core.channels import CHANNELS, TIME
 from hil.core.finding_list import repeated
 from hil.core.recording._assigned import assigned, is_there, listing
 from hil.core.recording._column_map import OPTION, ColumnMap
+from hil.core.recording._csv_below_names import (
+    MOST_BETWEEN,
+    UNITS_ABOVE,
+    first_sample,
+    settle_rows,
+    take_units,
+)
 from hil.core.recording._csv_layout import PER_SECOND, Layout, LayoutError, is_number, plain_unit
-from hil.core.recording._time_stamps import TimeStamps, is_stamp, kind_of
+from hil.core.recording._time_stamps import is_stamp
 
 #: Lines and characters of a file among which its names are looked for.
 MOST_LINES, MOST_CHARACTERS = 400, 1 << 20
-_MOST_BETWEEN = 12  # lines between names and samples
-_UNITS_ABOVE = 6
 _SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab", "|": "bar"}
 _NAMED_WITH_UNIT = re.compile(r"(.+?)\s*[\[(]\s*([^\[\]()]*?)\s*[\])]")
 _TIME_NAMES = ("time", "t", "timestamp", "timestamps")
@@ -67,10 +72,10 @@ def table_begin(lines: Sequence[str], columns: ColumnMap, where: str) -> TableBe
         layout = _layout(lines, header, separator, columns, where, doubt)
         if header > first:
             layout.notes.insert(0, f"{_lines(header - first)} above the names, left out")
-    samples = _first_sample(lines, header, layout)
-    _take_units(lines, header, samples, layout)
+    samples = first_sample(lines, header, layout)
+    take_units(lines, header, samples, layout)
     if samples < len(lines):
-        _settle_rows(lines, samples, layout)
+        settle_rows(lines, samples, layout)
     return TableBegin(layout, header, samples)
 
 
@@ -203,16 +208,17 @@ def _named_line(lines: Sequence[str], columns: ColumnMap) -> tuple[int, str] | N
 
 
 def _score(cells: list[str], wanted: list[str], *, counted: bool) -> int:
-    if wanted:
-        return sum(is_there(column, cells) for column in wanted)
     times = sum(map(_is_time, cells))
+    if wanted:
+        found = sum(is_there(column, cells) + (column in cells) for column in wanted)
+        return found + (times > 0) if found else 0
     channels = sum(_name_and_unit(cell)[0] in CHANNELS for cell in cells)
     return times + channels if times or counted else 0
 
 
 def _has_samples(lines: Sequence[str], header: int, separator: str, cells: int) -> bool:
     """Whether some lines below one there are numbers, about as many as it has cells."""
-    for line in lines[header + 1 : header + 2 + _MOST_BETWEEN]:
+    for line in lines[header + 1 : header + 2 + MOST_BETWEEN]:
         found = [cell.strip() for cell in Layout([], separator).cells(line)]
         numbers = sum(is_number(cell) or is_stamp(cell) for cell in found)
         if numbers and abs(len(found) - cells) <= 1 and len(found) > 1:
@@ -240,6 +246,8 @@ def _layout(
         assert found.assigned is not None
         found.names = found.assigned.channels
         found.units = [""] * len(cells)
+        named = [_name_and_unit(cell) for cell in cells]
+        found.take_units([unit or beside for _, unit, beside in named])
         if TIME not in found.names and not columns.every_s:
             _name_time(lines, header, cells, found, doubt)
         _drop_repeated(found)
@@ -274,11 +282,9 @@ def _name_time(
         )
     found.names[number] = TIME
     below = [
-        Layout([], found.separator).cells(line) for line in lines[header + 1 : header + 2 + _MOST_BETWEEN]
+        Layout([], found.separator).cells(line) for line in lines[header + 1 : header + 2 + MOST_BETWEEN]
     ]
-    above = [
-        Layout([], found.separator).cells(line) for line in lines[max(0, header - _UNITS_ABOVE) : header]
-    ]
+    above = [Layout([], found.separator).cells(line) for line in lines[max(0, header - UNITS_ABOVE) : header]]
     said = [row[number] for row in (*below, *above) if len(row) > number]
     stamped = any(is_stamp(cell) for cell in said)
     in_a_row = any(plain_unit(cell) in PER_SECOND for cell in said)
@@ -306,43 +312,3 @@ def _drop_repeated(found: Layout) -> None:
             found.notes.append(f"column '{name}' stands twice; the first was taken")
             found.names[number] = ""
         seen.add(name or "")
-
-
-def _first_sample(lines: Sequence[str], header: int, layout: Layout) -> int:
-    """Number of the first line below the names in which a number stands."""
-    for number, line in enumerate(lines[header + 1 : header + 2 + _MOST_BETWEEN], header + 1):
-        cells = [cell.strip() for cell in layout.cells(line)]
-        if any(is_number(cell) or is_stamp(cell) for cell in cells) or set(cells) <= {"1"}:
-            return number
-    return header + 1
-
-
-def _take_units(lines: Sequence[str], header: int, samples: int, layout: Layout) -> None:
-    """Units of a line below the names, or in a preamble above them; other lines below are told."""
-    other = []
-    units = None
-    for number in (*range(header + 1, samples), *range(header - 1, max(-1, header - 1 - _UNITS_ABOVE), -1)):
-        cells = [cell.strip().strip('"') for cell in layout.cells(lines[number])]
-        cells += [""] * (len(layout.names) - len(cells))
-        if units is None and len(cells) >= len(layout.names) and layout.is_of_units(cells):
-            units = number
-            layout.take_units(cells[: len(layout.names)])
-            layout.notes.append(f"line {number + 1} gives units")
-        elif number > header and lines[number].strip():
-            other.append(number + 1)
-    if other:
-        which = f"line {other[0]}" if len(other) == 1 else f"{len(other)} lines from line {other[0]} on"
-        layout.notes.append(f"{which} between names and samples: no unit and no number, left out")
-
-
-def _settle_rows(lines: Sequence[str], samples: int, layout: Layout) -> None:
-    """Cells of a line, which may have fewer at the end than there are names; a time that is text."""
-    cells = [cell.strip() for cell in layout.cells(lines[samples])]
-    layout.cells_expected = len(layout.names)
-    surplus = len(layout.names) - len(cells)
-    if surplus > 0 and all(name in ("", "Comment") for name in layout.names[len(cells) :]):
-        layout.names, layout.cells_expected = layout.names[: len(cells)], len(cells)
-    time = layout.names.index(TIME) if TIME in layout.names else None
-    if time is not None and time < len(cells) and is_stamp(cells[time]):
-        layout.stamps = TimeStamps()
-        layout.notes.append(f"'{TIME}' is a {kind_of(cells[time])}: it was counted from the first")

@@ -60,16 +60,24 @@ class Layout:
         """
         for column, (name, unit) in enumerate(zip(self.names, units, strict=True)):
             spelled = plain_unit(unit)
-            if self.assigned is not None and name in self.assigned.columns.sources:
-                if has_unit(unit):
-                    self.assigned.units.setdefault(name, unit.strip().strip('"'))
+            if self.assigned is not None and (name in CHANNELS or name in self.assigned.columns.sources):
+                self._keep(name, unit.strip().strip('"'))
                 continue
             if not spelled or name not in CHANNELS:
                 continue
-            if name == TIME:
+            if name == TIME and ":" not in unit:
                 self._take_time(column, spelled, unit)
-            elif has_unit(unit):
+            elif name != TIME and has_unit(unit):
                 self._convert(column, unit)
+
+    def _keep(self, name: str, unit: str) -> None:
+        """Take the unit of a channel of a map, to be converted with all that the map says."""
+        assert self.assigned is not None
+        if not has_unit(unit) or (name == TIME and ":" in unit):
+            return
+        known = self.assigned.units.setdefault(name, unit)
+        if plain_unit(known) != plain_unit(unit):
+            raise LayoutError(f"is in '{known}' by its name and in '{unit}' beside it", "mend the unit", name)
 
     def _convert(self, column: int, unit: str) -> None:
         name = self.names[column]
@@ -95,12 +103,22 @@ class Layout:
         self.per_second = PER_SECOND[spelled]
 
     def is_of_units(self, cells: Sequence[str]) -> bool:
-        """Whether the line below the names gives their units."""
+        """Whether a line beside the names gives their units.
+
+        Raises:
+            LayoutError: it does for some channels, and for another something that is no unit.
+        """
+        if any(map(is_number, cells)):
+            return False
         wanted = self.assigned.columns.sources if self.assigned is not None else {}
-        beside = zip(self.names, map(plain_unit, cells), strict=False)
-        known = [unit for name, unit in beside if name in CHANNELS or name in wanted]
-        spelled = any(known) and all(not unit or is_spelled(unit) for unit in known)
-        return spelled and not any(map(is_number, cells))
+        beside = [(name, cell) for name, cell in zip(self.names, cells, strict=False) if plain_unit(cell)]
+        known = [(name, cell) for name, cell in beside if name in CHANNELS or name in wanted]
+        spelled = [name for name, cell in known if is_spelled(plain_unit(cell)) or is_spelled(cell)]
+        strange = [one for one in known if one[0] not in spelled and one[0] != TIME]
+        if spelled and strange:
+            name, cell = strange[0]
+            raise LayoutError(f"'{cell}' stands in a line of units and is none that is known", "", name)
+        return bool(spelled)
 
     def settle_decimal(self, rows: Sequence[Sequence[str]]) -> None:
         """Find out whether numbers have a decimal comma, from some rows.

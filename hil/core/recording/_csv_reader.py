@@ -230,7 +230,7 @@ class _Table:
                 self._blank_lines.append(samples)
                 continue
             cells = self._layout.cells(text)
-            if self._is_below(cells, line):
+            if self._is_below(cells, line, first=samples == 0):
                 continue
             if len(cells) != self._layout.cells_expected:
                 raise self._wrong_number_of_cells(cells, line)
@@ -244,19 +244,19 @@ class _Table:
             samples += 1
         return {column: np.array(values, np.float64) for column, values in read.items()}
 
-    def _is_below(self, cells: list[str], line: int) -> bool:
+    def _is_below(self, cells: list[str], line: int, *, first: bool) -> bool:
         """Whether a line is no sample but one of those that may stand below the samples: text.
 
         Raises:
             BadInputError: samples follow such a line.
         """
-        first = cells[0].strip().strip('"*#=')
+        begin = cells[0].strip().strip('"*#=')
         time = self._header.index(TIME) if TIME in self._header else 0
         there = time < len(cells) and cells[time].strip()[:1].isalpha()
-        text = first[:1].isalpha() and (len(cells) != self._layout.cells_expected or there)
+        text = begin[:1].isalpha() and (len(cells) != self._layout.cells_expected or there)
         if text and time < len(cells) and self._is_value(cells[time].strip(), time):
             text = False
-        if text and len(self._below) < _MOST_BELOW and (self._samples or self._below):
+        if text and len(self._below) < _MOST_BELOW and not first:
             self._below.append(
                 self._wrong_number_of_cells(cells, line)
                 if not there

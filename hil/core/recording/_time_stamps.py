@@ -33,9 +33,9 @@ class TimeStamps:
 
     first_day: int | None = None
     notes: list[str] = field(default_factory=list)
-    _first_s: float = np.nan
-    _last_s: float = np.nan
-    _added_s: float = 0.0
+    first_s: float = np.nan
+    last_s: float = np.nan
+    added_s: float = 0.0
 
     def seconds(self, cells: Any) -> Array:
         """Seconds of the stamps of an Arrow array of text; NaN of those that are missing.
@@ -66,7 +66,7 @@ class TimeStamps:
             year, month, day = c, (a if month_first else b), (b if month_first else a)
             if slashes and int(b.max()) <= 12 and month_first:
                 note = "dates with slashes were read as month/day/year"
-                self.notes += [note] if note not in self.notes else []
+                self.notes = self.notes if note in self.notes else [*self.notes, note]
         year = np.where(year < 100, year + 2000, year)
         if int(month.max()) > 12 or int(day.max()) > 31:
             raise ValueError("a date that is none", 0)
@@ -80,21 +80,22 @@ class TimeStamps:
         if self.first_day is None:
             found = self._past_midnight(found)
         there = np.isfinite(found)
-        if np.isnan(self._first_s) and there.any():
-            self._first_s = float(found[there][0])
-        return found - self._first_s
+        if np.isnan(self.first_s) and there.any():
+            self.first_s = float(found[there][0])
+        return found - self.first_s
 
     def _past_midnight(self, found: Array) -> Array:
         there = np.flatnonzero(np.isfinite(found))
         known = found[there]
-        steps = np.diff(known, prepend=self._last_s if not np.isnan(self._last_s) else known[:1])
+        steps = np.diff(known, prepend=self.last_s if not np.isnan(self.last_s) else known[:1])
         passed = steps < -0.5 * _DAY_S
         if passed.any():
-            self.notes.append("the time of day passes midnight: stamps behind it are of the next day")
+            note = "the time of day passes midnight: stamps behind it are of the next day"
+            self.notes = [*self.notes, note]
         found = found.copy()
-        found[there] = known + self._added_s + _DAY_S * np.cumsum(passed)
-        self._added_s += _DAY_S * float(np.count_nonzero(passed))
-        self._last_s = float(known[-1]) if len(known) else self._last_s
+        found[there] = known + self.added_s + _DAY_S * np.cumsum(passed)
+        self.added_s += _DAY_S * float(np.count_nonzero(passed))
+        self.last_s = float(known[-1]) if len(known) else self.last_s
         return found
 
 
