@@ -220,7 +220,7 @@ def _has_samples(lines: Sequence[str], header: int, separator: str, cells: int) 
     """Whether some lines below one there are numbers, about as many as it has cells."""
     for line in lines[header + 1 : header + 2 + MOST_BETWEEN]:
         found = [cell.strip() for cell in Layout([], separator).cells(line)]
-        numbers = sum(is_number(cell) or is_stamp(cell) for cell in found)
+        numbers = sum(is_number(cell) or is_stamp(cell) or cell == "1" for cell in found)
         if numbers and abs(len(found) - cells) <= 1 and len(found) > 1:
             return True
     return False

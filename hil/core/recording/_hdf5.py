@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from hil.core.channels import CHANNELS
+from hil.core.channels import CHANNELS, TIME
 from hil.core.errors import BadInputError
 from hil.core.extras import need
 from hil.core.files import refuse_unless_regular
@@ -17,6 +17,7 @@ from hil.core.recording._foreign_table import Column, recording_of
 from hil.core.recording._table import Recording, refuse_too_large
 
 _MOST_DEEP = 8  # groups inside of groups
+_MOST_PACKED = 1000  # values in a byte: what deflate makes of zeros
 _UNITS = ("units", "unit", "Unit", "Units")
 
 
@@ -37,6 +38,8 @@ def read_hdf5(path: Path, columns: ColumnMap = AS_NAMED) -> Recording:
             found = list(_vectors(file, "", 0, notes))
             rows = max((size for _, size, _ in found), default=0)
             refuse_too_large(rows, len(found), str(path))
+            if sum(size for _, size, _ in found) > _MOST_PACKED * path.stat().st_size:
+                raise ValueError("promises more values than its bytes can hold")
             table = {name: read() for name, _, read in found}
     except BadInputError:
         raise
@@ -89,11 +92,12 @@ def _of_pandas(group: Any, at: str) -> Iterator[tuple[str, int, Any]]:
     def read(block: str, number: int) -> Any:
         return lambda: Column(np.asarray(group[f"{block}_values"][:, number], np.float64))
 
+    kind = _decoded(group["axis1"].attrs.get("kind", b""))
+    is_moment = kind.startswith(("datetime64", "timedelta64"))
+
     def index() -> Column:
         values = group["axis1"][()]
-        kind = group["axis1"].attrs.get("kind", b"")
-        kind = kind.decode() if isinstance(kind, bytes) else str(kind)
-        if kind.startswith(("datetime64", "timedelta64")):
+        if is_moment:
             per_second = {"s": 1.0, "ms": 1e3, "us": 1e6}.get(kind.rpartition("[")[2].strip("]"), 1e9)
             return Column((values - values[:1].sum()) / per_second, "s")
         return Column(np.asarray(values, np.float64))
@@ -105,8 +109,9 @@ def _of_pandas(group: Any, at: str) -> Iterator[tuple[str, int, Any]]:
                 names[_decoded(name)] = (block, number)
     rows = len(group["axis1"])
     if group["axis1"].dtype.kind in "fiub":
-        index_name = _decoded(group["axis1"].attrs.get("name", b"")) or "index"
-        yield f"{at}{index_name if index_name not in ('N.', 'None') else 'index'}", rows, index
+        index_name = _decoded(group["axis1"].attrs.get("name", b""))
+        unnamed = TIME if is_moment and TIME not in names else "index"
+        yield f"{at}{unnamed if index_name in ('', 'N.', 'None') else index_name}", rows, index
     for name, (block, number) in names.items():
         yield f"{at}{name}", rows, read(block, number)
 

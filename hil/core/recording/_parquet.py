@@ -9,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from hil.core.channels import CHANNELS, unit_of
+from hil.core.channels import CHANNELS, TIME, unit_of
 from hil.core.errors import BadInputError
 from hil.core.files import refuse_unless_regular, replacing
 from hil.core.finding_list import repeated
@@ -17,6 +17,8 @@ from hil.core.recording._column_map import AS_NAMED, ColumnMap
 from hil.core.recording._evidence import EVIDENCE, evidence_of, has_evidence, take_evidence
 from hil.core.recording._foreign_table import Column, recording_of
 from hil.core.recording._table import Array, Recording, refuse_too_large
+
+_INDEX = "__index_level_0__"  # pandas' name for an index without one
 
 
 def read_parquet(path: Path, columns: ColumnMap = AS_NAMED) -> Recording:
@@ -38,7 +40,8 @@ def read_parquet(path: Path, columns: ColumnMap = AS_NAMED) -> Recording:
                 if _is_number(field.type):
                     table[field.name] = Column(_column(file, field.name), _unit(field))
                 elif pa.types.is_timestamp(field.type) or pa.types.is_duration(field.type):
-                    table[field.name] = Column(_since_first(file, field), "s")
+                    is_index = field.name == _INDEX and TIME not in fields.names
+                    table[TIME if is_index else field.name] = Column(_since_first(file, field), "s")
                 elif field.name in CHANNELS:
                     raise BadInputError(
                         f"holds {field.type}, not numbers",
