@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import cast, get_args
 
 from hil.app.replay import replay_logs
+from hil.cli._named_values import named_numbers
 from hil.cli._output import TERMINAL, console, count_in_words, print_criteria, print_json
 from hil.cli._streams import complain
 from hil.cli.commands.replay import Replay
@@ -77,6 +78,7 @@ def _request(options: Replay) -> ReplayRequest:
         operator=options.operator,
         stamps=_stamps(options.stamps),
         columns=column_map(options.columns),
+        shifts_s=named_numbers(options.shift or [], "--shift"),
     )
 
 
@@ -84,7 +86,7 @@ def _stamps(given: str) -> Stamps:
     for known in get_args(Stamps):
         if given == known:
             return cast(Stamps, known)
-    raise BadInputError(f"--stamps is '{printable(given, 40)}'", fix="one of: append, sort")
+    raise BadInputError(f"--stamps is '{printable(given, 40)}'", fix="one of: append, sort, log, block")
 
 
 def _pairs(given: list[str], option: str, *, needs_key: bool) -> Mapping[str, str]:

@@ -56,9 +56,17 @@ class Replay:
         str,
         typer.Option(
             help="where stamps of a log go back: append (what follows was recorded later) or sort "
-            "(it was written out of order); default: such a log is refused"
+            "(it was written out of order); those of an ASC's trigger blocks: log (they count from the log's "
+            "begin) or block (from each block's date); default: a log that leaves it open is refused"
         ),
     ] = ""
+    shift: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="LOG=SECONDS",
+            help="move the clock of one of several logs, as of a tool that wrote another time zone",
+        ),
+    ] = None
     columns: Columns = None
     operator: Annotated[
         str, typer.Option(help="name of the person who ran the bench; printed in the report")

@@ -20,6 +20,7 @@ from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.bus_tally import known_identifiers
 from hil.engine.replay._bench import BenchDecoder
 from hil.engine.replay._channels import Frames, chosen_buses, merged
+from hil.engine.replay._clocks import shifted
 from hil.engine.replay._counts import FrameCounts, counted
 from hil.engine.replay._dbc import DbcDecoder
 from hil.engine.replay._segments import Segments, segments_from
@@ -40,6 +41,7 @@ class ReplayRequest:
         segments: where the plan's segments lie: a recording of the run, or JSON.
         stamps: what it means that stamps of a log go back.
         columns: which signals of a DBC are which channels.
+        shifts_s: by file name of a log, seconds to be added to its clock.
     """
 
     logs: Sequence[Path]
@@ -51,6 +53,7 @@ class ReplayRequest:
     operator: str = ""
     stamps: Stamps = ""
     columns: ColumnMap = AS_NAMED
+    shifts_s: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -78,12 +81,14 @@ def replay(request: ReplayRequest, path: Path, show: Callable[[str], None] = lam
         show(f"reading {log.name}")
         logs.append(read_can_log(log, request.stamps))
     segments = _segments(request)
-    frames = merged(logs)
+    frames = merged(logs, request.shifts_s)
+    logs = shifted(logs, request.shifts_s)
     show("decoding")
     decoder, remarks = _decoder(request, frames)
     with replacing(path) as temporary:
         written = _write(decoder, temporary, frames.began_ns or 0)
         remarks += [f"{log.path.name}: {remark}" for log in logs for remark in log.remarks]
+        remarks += frames.remarks
         blocks = [(block, decoder.keys_of(*where)) for where, block in frames.channels.items()]
         counts = counted(logs, blocks, decoder.short)
         remarks += counts.in_words()
