@@ -13,6 +13,7 @@ from hil.core.channels import CHANNELS, TIME, unit_of
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
 from hil.core.recording._column_map import AS_NAMED, OPTION, ColumnMap, Source, fix_of, wanted_unit
+from hil.core.recording._rasters import refuse_sentinel
 from hil.core.recording._table import Array
 from hil.core.suggestion import closest
 from hil.core.units import UnitError, conversion, has_unit
@@ -30,6 +31,7 @@ class Assigned:
         channels: by column, the channel or the name that it keeps; '' where it is left out.
         units: by channel, the unit that stands beside the column's name.
         understood: by channel of the map, what it was computed from; for people and `--json`.
+        own: this software exported the file: each number means what it says.
     """
 
     channels: list[str]
@@ -38,6 +40,7 @@ class Assigned:
     units: dict[str, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     understood: dict[str, dict[str, Any]] = field(default_factory=dict)
+    own: bool = False
 
     def convert(self, values: Array, channel: str, unit: str, where: str) -> Array:
         """A column's cells in the unit of its channel; `unit` is what the file says, or ''.
@@ -49,6 +52,9 @@ class Assigned:
         """
         source = self.columns.sources.get(channel)
         unit = unit or self.units.get(channel, "")
+        decided = self.own or (source is not None and source.missing is not None)
+        if channel != TIME and not decided and (source is not None or channel in CHANNELS):
+            refuse_sentinel(values, channel, where)
         if source is None and (channel not in CHANNELS or not has_unit(unit)):
             return values
         chosen = source or Source(channel)

@@ -47,7 +47,7 @@ def take_units(lines: Sequence[str], header: int, samples: int, layout: Layout) 
     for number in (*range(header + 1, samples), *range(header - 1, max(-1, header - 1 - UNITS_ABOVE), -1)):
         cells = [cell.strip().strip('"') for cell in layout.cells(lines[number])]
         cells += [""] * (len(layout.names) - len(cells))
-        if units is None and len(cells) >= len(layout.names) and layout.is_of_units(cells):
+        if units is None and len(cells) >= len(layout.names) and _gives_units(cells, number, layout):
             units = number
             layout.take_units(cells[: len(layout.names)])
             layout.notes.append(f"line {number + 1} gives units")
@@ -57,6 +57,14 @@ def take_units(lines: Sequence[str], header: int, samples: int, layout: Layout) 
     if other:
         which = f"line {other[0]}" if len(other) == 1 else f"{len(other)} lines from line {other[0]} on"
         layout.notes.append(f"{which} between names and samples: types or descriptions, left out")
+
+
+def _gives_units(cells: Sequence[str], number: int, layout: Layout) -> bool:
+    try:
+        return layout.is_of_units(cells)
+    except LayoutError as error:
+        error.line = number
+        raise
 
 
 def _refuse_unless_known(cells: Sequence[str], number: int, layout: Layout) -> None:

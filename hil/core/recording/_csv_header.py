@@ -290,6 +290,8 @@ def _name_time(
     in_a_row = any(plain_unit(cell) in PER_SECOND for cell in said)
     name, _, beside = _name_and_unit(cells[number])
     if name == TIME or stamped or in_a_row or beside:
+        if cells[number].lower() == "time":
+            return
         found.notes.append(f"'{cells[number]}' was taken to be the time")
     elif cells[number].lower() in _IN_SECONDS:
         found.notes.append(f"'{cells[number]}' was taken to be the time, in s as its tool writes it")

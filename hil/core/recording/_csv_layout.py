@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from hil.core.channels import CHANNELS, TIME
 from hil.core.recording._assigned import Assigned
+from hil.core.recording._column_map import OPTION
 from hil.core.recording._time_stamps import TimeStamps, is_stamp
 from hil.core.units import Conversion, UnitError, conversion, has_unit, is_spelled
 
@@ -114,10 +115,15 @@ class Layout:
         beside = [(name, cell) for name, cell in zip(self.names, cells, strict=False) if plain_unit(cell)]
         known = [(name, cell) for name, cell in beside if name in CHANNELS or name in wanted]
         spelled = [name for name, cell in known if is_spelled(plain_unit(cell)) or is_spelled(cell)]
-        strange = [one for one in known if one[0] not in spelled and one[0] != TIME]
+        stated = [name for name, source in wanted.items() if source.unit]
+        strange = [one for one in known if one[0] not in (*spelled, *stated, TIME)]
         if spelled and strange:
             name, cell = strange[0]
-            raise LayoutError(f"'{cell}' stands in a line of units and is none that is known", "", name)
+            raise LayoutError(
+                f"'{cell}' stands in a line of units and is none that is known",
+                f"state it: {OPTION} '{name}=COLUMN, unit=…'",
+                name,
+            )
         return bool(spelled)
 
     def settle_decimal(self, rows: Sequence[Sequence[str]]) -> None:

@@ -20,6 +20,7 @@ from hil.core.recording._csv_layout import Layout, LayoutError
 from hil.core.recording._csv_writer import sha256_of
 from hil.core.recording._evidence import LARGEST_BYTES, sidecar, take_evidence
 from hil.core.recording._foreign_table import settled
+from hil.core.recording._rasters import refuse_sentinel
 from hil.core.recording._table import Array, Recording, refuse_too_large
 from hil.core.recording._table_clock import counted_on
 
@@ -102,6 +103,7 @@ class _Table:
 
     def _recording(self) -> Recording:
         assigned = self._layout.assigned
+        own = sidecar(self._path).is_file()
         channels = {}
         for column in list(self._columns):
             values = np.concatenate([*self._columns.pop(column), np.zeros(0)])
@@ -113,13 +115,15 @@ class _Table:
                 stamps = name == TIME and not numbers
                 channels[name] = values if stamps else assigned.convert(values, name, "", where)
                 continue
+            if name in CHANNELS and name != TIME and not own:
+                refuse_sentinel(values, name, f"{self._path}: column '{name}'")
             conversion = self._layout.conversions.get(column)
             channels[name] = values if conversion is None else conversion.of(values)
         self._settle_time(channels)
         if self._layout.stamps is not None:
             self._notes += self._layout.stamps.notes
         blank = self._blank_lines
-        found = settled(channels, self._path, assigned, self._notes, own=sidecar(self._path).is_file())
+        found = settled(channels, self._path, assigned, self._notes, own=own)
         found.blank_lines = blank if found.samples == self._samples else []
         return found
 
@@ -264,7 +268,9 @@ class _Table:
             )
             return True
         if self._below:
-            raise self._below[0]
+            below = self._below[0]
+            cut = "samples go on below this line: cut the file into its measurements"
+            raise BadInputError(below.what, where=below.where, fix=cut)
         return False
 
     def _is_value(self, cell: str, column: int) -> bool:

@@ -14,7 +14,7 @@ from hil.core.channels import CHANNELS, INPUT, TIME, unit_of
 from hil.core.errors import BadInputError
 from hil.core.recording._assigned import Assigned, assigned
 from hil.core.recording._column_map import ColumnMap
-from hil.core.recording._rasters import of_one_rate, refuse_sentinels
+from hil.core.recording._rasters import of_one_rate
 from hil.core.recording._table import Array, Recording
 from hil.core.recording._table_clock import counted_on, evenly_placed
 
@@ -49,9 +49,6 @@ def settled(
         return Recording(channels, path, notes=notes)
     if TIME in channels:
         channels[TIME] = evenly_placed(channels[TIME], str(path), notes)
-    sources = found.columns.sources if found is not None else {}
-    decided = [name for name, source in sources.items() if source.missing is not None]
-    refuse_sentinels(channels, str(path), decided)
     channels = of_one_rate(channels, notes)
     recording = Recording(channels, path, notes=notes)
     if found is not None and found.understood:
@@ -113,6 +110,7 @@ def recording_of(
     """
     names = [_known(name) for name in table]
     found = assigned(names, columns, str(path)) if columns else Assigned(names, str(path))
+    found.own = own
     channels: dict[str, Array] = {}
     times: dict[str, Array] = {}
     for channel, (name, column) in zip(found.channels, table.items(), strict=True):

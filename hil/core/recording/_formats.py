@@ -48,11 +48,10 @@ NOT_READ = {
     ),
     **dict.fromkeys((".npz", ".npy"), ("NumPy's", "numpy.load, then write Parquet by pandas")),
     **dict.fromkeys((".pkl", ".pickle"), ("a pickle, which can run code", "pandas.DataFrame.to_parquet")),
-    **dict.fromkeys((".bag", ".db3"), ("a ROS bag", "mcap convert FILE FILE.mcap, then export a table")),
+    **dict.fromkeys((".bag", ".db3"), ("a ROS bag", "rosbags reads it, then write Parquet by pandas")),
     **dict.fromkeys((".tdm", ".tdx"), ("DIAdem's older TDM", "save it as TDMS in DIAdem")),
     **dict.fromkeys((".uff", ".unv"), ("a universal file", "pyuff reads it, then write Parquet by pandas")),
     **dict.fromkeys((".zip", ".gz", ".zst", ".7z"), ("packed", "unpack it")),
-    ".d97": ("AVL's or imc's binary", "export it as text"),
 }
 _BEGINS = (
     (b"PK\x03\x04", "a spreadsheet or a packed file", "save it as CSV or Parquet, or unpack it"),

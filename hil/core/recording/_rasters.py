@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-
 import numpy as np
 
 from hil.core.channels import CHANNELS, INPUT, TIME
@@ -61,32 +59,32 @@ def of_one_rate(channels: dict[str, Array], notes: list[str]) -> dict[str, Array
     return found
 
 
-def refuse_sentinels(channels: dict[str, Array], where: str, decided: Collection[str]) -> None:
+def refuse_sentinel(values: Array, channel: str, where: str) -> None:
     """Refuse a number that tools write for no value, where it lies far from all others of its column.
 
     Args:
-        decided: channels of which it is known which numbers mean that there is no value.
+        values: as they stand in the file, before any conversion.
 
     Raises:
-        BadInputError: there is one; names column, number and the option that decides it.
+        BadInputError: there is one; names it and the option that decides it.
     """
-    for name, values in channels.items():
-        if name not in CHANNELS or name == TIME or name in decided or len(values) < _LEAST_ROWS:
-            continue
-        found = np.isin(values, _SENTINELS)
-        count = int(np.count_nonzero(found))
-        if not count or count > _LARGEST_SHARE * len(values):
-            continue
-        others = values[~found & np.isfinite(values)]
-        largest = float(np.abs(others).max()) if len(others) else 0.0
-        number = float(values[found][0])
-        if abs(number) > _FAR * largest:
-            raise BadInputError(
-                f"'{name}' is {number:g} in {count} rows and within ±{largest:.4g} in all others",
-                where=where,
-                fix=f"if that means that there is no value: {OPTION} '{name}=COLUMN, missing={number:g}'; "
-                "if it is one: missing= without a number",
-            )
+    if len(values) < _LEAST_ROWS:
+        return
+    found = np.isin(values, _SENTINELS)
+    count = int(np.count_nonzero(found))
+    if not count or count > _LARGEST_SHARE * len(values):
+        return
+    others = values[~found & np.isfinite(values)]
+    largest = float(np.abs(others).max()) if len(others) else 0.0
+    number = float(values[found][0])
+    if abs(number) > _FAR * largest:
+        rows = "1 row" if count == 1 else f"{count} rows"
+        raise BadInputError(
+            f"is {number:g} in {rows}, and within ±{largest:.4g} in all others",
+            where=where,
+            fix=f"if that means that there is no value: {OPTION} '{channel}=COLUMN, missing={number:g}'; "
+            "if it is one: missing= without a number",
+        )
 
 
 def _distance(values: Array) -> int:

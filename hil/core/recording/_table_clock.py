@@ -36,10 +36,9 @@ def counted_on(stamps: Array, notes: list[str]) -> Array:
     for span in _COUNTERS:
         on = steps[back] + span
         if stamps.max() < span and (on > 0).all() and (on <= _MOST_STEPS * max(forward, 1.0)).all():
-            times = int(np.count_nonzero(back))
-            notes.append(
-                f"time counts in {span.bit_length() - 1} bits and begins again {times} times: counted on"
-            )
+            count = int(np.count_nonzero(back))
+            times = "once" if count == 1 else f"{count} times"
+            notes.append(f"time counts in {span.bit_length() - 1} bits and begins again {times}: counted on")
             return np.asarray(stamps + span * np.concatenate([[0], np.cumsum(back)]))
     return stamps
 

@@ -212,7 +212,9 @@ def test_cells_that_mean_nothing_are_missing(tmp_path: Path) -> None:
     options = ("motor_torque_ref_nm=T", "motor_speed_rad_s=n, unit=rpm")
     with pytest.raises(BadInputError, match="missing=-9999") as caught:
         read(tmp_path, {"time_s": SECONDS, "motor_torque_ref_nm": TORQUE, "motor_speed_rad_s": speed})
-    assert "'motor_speed_rad_s' is -9999 in 1 rows" in str(caught.value)
+    assert "column 'motor_speed_rad_s': is -9999 in 1 row, and within" in str(caught.value)
+    with pytest.raises(BadInputError, match="missing=-9999"):
+        read(tmp_path, table, *options)  # whatever the unit makes of it
     found = read(tmp_path, table, *options[:1], f"{options[1]}, missing=-9999")
     assert abs(found["motor_speed_rad_s"][77] - RAD_S[77]) < 0.1
     kept = read(tmp_path, table, *options[:1], f"{options[1]}, missing=")

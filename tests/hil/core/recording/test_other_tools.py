@@ -212,13 +212,13 @@ def test_time_that_counts_and_begins_again_goes_on(
 
 def test_samples_below_a_line_of_text_are_refused_with_its_line(tmp_path: Path) -> None:
     body = rows(",", numbers(SECONDS), numbers(TORQUE), numbers(RPM))
-    with pytest.raises(BadInputError, match=r"line 122, column"):
+    with pytest.raises(BadInputError, match=r"(?s)line 122, column.*samples go on below"):
         read(tmp_path, "time_s,T_req,n_EM\n" + body + "Second measurement\n" + body, *MAP)
 
 
 def test_a_line_of_units_with_one_that_is_none_is_refused(tmp_path: Path) -> None:
     body = rows(",", numbers(SECONDS), numbers(TORQUE), numbers(RPM))
-    with pytest.raises(BadInputError, match="'Umdr.' stands in a line of units"):
+    with pytest.raises(BadInputError, match="line 2, column.*'Umdr.' stands in a line of units"):
         read(tmp_path, "time_s,T_req,n_EM\ns,Nm,Umdr.\n" + body, *MAP)
 
 
