@@ -12,9 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.channels import TIME
-from hil.core.dbc_messages import MessageLayout, MessageSamples, decoded, read_messages_of
+from hil.core.dbc_messages import MessageLayout, MessageSamples, decoded, keys_of, read_messages_of
 from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock
+from hil.core.j1939 import for_addresses, of_other_addresses
 from hil.core.recording import AS_NAMED, ColumnMap, RecordingWriter, assigned_signals
 from hil.engine.bench.device_kinds import descriptions_of
 from hil.engine.replay._channels import Frames, listed
@@ -46,6 +47,7 @@ class DbcDecoder:
         self.attachments: dict[str, bytes] = {}
         self.units: dict[str, str] = {}
         self._frames: dict[str, FrameBlock] = {}
+        self._layouts: dict[str, list[MessageLayout]] = {}
         layouts: dict[str, list[MessageLayout]] = {}
         for channel, path in dbcs.items():
             layouts[channel], remarks = read_messages_of(path)
@@ -61,10 +63,12 @@ class DbcDecoder:
             block = frames.of(channel)
             assert block is not None
             self._frames[_plain(channel)] = block
-            own = layouts.get(channel) or layouts.get("", [])
+            given = layouts.get(channel) or layouts.get("", [])
+            own, remarks = for_addresses(given, np.unique(keys_of(block)).tolist())
+            self.remarks += remarks
+            self._layouts[channel] = own
             found += [(_plain(channel), samples) for samples in decoded(block, own)]
         self.short = sum(samples.short for _, samples in found)
-        self._layouts = layouts
         if not found:
             names = ", ".join(str(path) for path in dbcs.values())
             raise BadInputError(
@@ -76,7 +80,11 @@ class DbcDecoder:
     def keys_of(self, file: str, channel: str) -> list[int]:
         """Keys of the messages by which a channel of a log is decoded."""
         del file
-        return [layout.key for layout in self._layouts.get(channel) or self._layouts.get("", [])]
+        return [layout.key for layout in self._layouts.get(channel, [])]
+
+    def about_unknown(self, unknown: Mapping[str, int]) -> list[str]:
+        """Why frames that are counted as of no message are not of one that only looks like theirs."""
+        return of_other_addresses([one for own in self._layouts.values() for one in own], unknown)
 
     def write(self, path: Path, began_ns: int) -> RecordingWriter:
         """Write frames and channels into a recording that is not closed yet.

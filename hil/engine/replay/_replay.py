@@ -92,6 +92,8 @@ def replay(request: ReplayRequest, path: Path, show: Callable[[str], None] = lam
         blocks = [(block, decoder.keys_of(*where)) for where, block in frames.channels.items()]
         counts = counted(logs, blocks, decoder.short)
         remarks += counts.in_words()
+        if isinstance(decoder, DbcDecoder):
+            remarks += decoder.about_unknown(counts.unknown)
         if frames.began_ns is None:
             remarks.append("the log has no date")
         found = segments.on(written.row_0_ns) if segments else ()
