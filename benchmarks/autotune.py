@@ -2,7 +2,7 @@
 
     python -m benchmarks.autotune [FOLDER]
 
-What the loop decides is told as it goes; results go to FOLDER (out/autotune-hidden).
+What the loop decides is reported as it goes; results go to FOLDER (out/autotune-hidden).
 """
 
 from __future__ import annotations

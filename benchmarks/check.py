@@ -17,7 +17,9 @@ from hil.engine.prediction.prediction import predict
 from test_plans import load_plan
 
 _COMMAND = "import sys; sys.argv[0] = 'hil'; from hil.cli import main; main()"
-_IMPORTS = "from hil.app.worker.lean_imports import import_python_can as i; i(); import hil.cli.check"
+_IMPORTS = (
+    "from hil.app.worker.lean_imports import import_python_can as i; i(); import hil.cli.commands.check"
+)
 
 
 def main() -> None:

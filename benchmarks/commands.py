@@ -55,7 +55,7 @@ def _parts(directory: Path) -> list[tuple[str, float]]:
         from hil.app.worker.lean_imports import import_python_can
 
         import_python_can()
-        import hil.cli.run  # noqa: F401
+        import hil.cli.commands.run  # noqa: F401
 
     timed("imports", imports)
     from hil.core.recording import Recording, read_recording

@@ -74,7 +74,7 @@ FAULTS = (
 
 @dataclass(frozen=True)
 class Moment:
-    """What one fault led to, s: until no torque (NaN: nobody was left to tell), of recording that is missing,
+    """What one fault led to, s: until no torque (NaN: no one was left to tell), of recording that is missing,
     until the command said so (NaN: it did not live to), and from the fault to the last request.
 
     `wrong`: what is not as it should be, in words.
@@ -181,7 +181,7 @@ def judged(fault: Fault, observer: Observer, folder: Path, done_s: float, code: 
     gone = on[-1] + 1 < len(torque)
     since_s = done_s if fault.whom == "command" else asked_s[-1]
     zero_s = float(status["time_s"][on[-1] + 1] - since_s) if gone else np.inf
-    if fault.whom == "stand-in":  # nobody is left to tell
+    if fault.whom == "stand-in":  # no one is left to tell
         zero_s = np.nan
     recording = read_recording(folder / "out" / "recording.mcap", allow_missing=True)
     began_s = recording.time_s[np.flatnonzero(recording["motor_torque_ref_nm"] > ON_NM)[0]]

@@ -20,7 +20,7 @@ import numpy.typing as npt
 from benchmarks.answers import largest_difference
 from benchmarks.plant import best_of
 from hil.core.model import EffectUse, Model, load_model
-from hil.core.thread_map import threads
+from hil.core.runtime.thread_map import threads
 from hil.engine.bench.bench_file import shipped
 from hil.plant import ideal_sensors, linear_system, pack, simulate_many
 

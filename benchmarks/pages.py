@@ -1,7 +1,7 @@
 """Figures of benchmarks in the documentation: each block is what a command printed, with its commit.
 
 A page marks a block with `<!-- figures: PART -->` and `<!-- end of figures -->`; whatever stands between them
-is written by `python -m benchmarks --write PART` and by nobody else.
+is written by `python -m benchmarks --write PART` and by no one else.
 """
 
 from __future__ import annotations

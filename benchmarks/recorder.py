@@ -15,9 +15,9 @@ import can
 import numpy as np
 
 from drivers import CanSettings, Wire, open_can
-from hil.core.clock import WallClock
-from hil.core.frames import FRAME, FrameBlock
+from hil.core.can.frames import FRAME, FrameBlock
 from hil.core.recording import RecordingWriter, read_frames
+from hil.core.runtime.clock import WallClock
 
 FRAMES, AT_ONCE = 400_000, 1000
 WANTED = 100_000

@@ -22,9 +22,9 @@ from can.io import mf4
 
 from benches import __file__ as benches
 from benchmarks.answers import OtherAnswerError, largest_difference
+from hil.core.can.dbc_messages import decoded, read_messages_of
+from hil.core.can.frames import FrameBlock, frames
 from hil.core.can_logs import read_can_log
-from hil.core.dbc_messages import decoded, read_messages_of
-from hil.core.frames import FrameBlock, frames
 from hil.core.recording import RecordingWriter, read_as_written, write_frames
 
 FRAMES, TURNS = 1_000_000, 3

@@ -15,7 +15,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from hil.cli._timing import timing_in_words
+from hil.cli.run_output import timing_in_words
 from hil.core.result import RunResult
 from hil.engine import BenchFile, RunRequest, load_bench, run_plan
 from test_plans import load_plan

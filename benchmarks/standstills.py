@@ -27,7 +27,7 @@ Times: TypeAlias = npt.NDArray[np.float64]
 _PERIOD_S = 0.5e-3
 _NOTICED_S = 0.15e-3  # a sleep is late by a tenth of this on a machine that does not stand still
 _PRIORITY = 2  # a run has 1
-_PIPE_BYTES = 1 << 20  # nobody reads until the end: some 65,000 standstills
+_PIPE_BYTES = 1 << 20  # no one reads until the end: some 65,000 standstills
 
 
 @dataclass
@@ -44,9 +44,9 @@ class Standstills:
         """For how long it had stood still by then, s; `time_s` shape (n,)."""
         begin_s, end_s = self.found.T
         before = np.concatenate([[0.0], np.cumsum(end_s - begin_s)])
-        begun = np.searchsorted(begin_s, time_s)
-        not_over = np.where(begun > 0, np.maximum(0.0, np.append(end_s, 0.0)[begun - 1] - time_s), 0.0)
-        return np.asarray(before[begun] - not_over)
+        started = np.searchsorted(begin_s, time_s)
+        not_over = np.where(started > 0, np.maximum(0.0, np.append(end_s, 0.0)[started - 1] - time_s), 0.0)
+        return np.asarray(before[started] - not_over)
 
 
 @contextlib.contextmanager
@@ -65,7 +65,7 @@ def looking(processor: int) -> Iterator[Standstills]:
         data, _ = process.communicate()
         standstills.found = np.frombuffer(data).reshape(-1, 2)
     if early:
-        raise SystemExit("nobody has looked whether the machine stood still: no real-time priority?")
+        raise SystemExit("no one has looked whether the machine stood still: no real-time priority?")
 
 
 def look(processor: int) -> None:

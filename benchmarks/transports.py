@@ -6,7 +6,7 @@ import contextlib
 import time
 
 from drivers import Wire, open_can
-from hil.core.clock import WallClock
+from hil.core.runtime.clock import WallClock
 from tests.transports.far_ends import FAR_ENDS, block_of, looked_after
 
 _FRAMES, _AT_ONCE = 20_000, 40  # ten milliseconds of a busy bus

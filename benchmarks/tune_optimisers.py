@@ -69,22 +69,22 @@ def ascents(cost: Budget, random: np.random.Generator, runs: int) -> None:
     order = [cost.start, *(scattered[i] for i in np.argsort(scores)[::-1])]
     ascent = Ascent(cost.tried, cost.criteria, LOOP_LIMITS)
     for number, point in enumerate(order):
-        ascent.carry_out(point, *ASCENT)
+        ascent.execute(point, *ASCENT)
         if number == 6:
-            ascent.carry_out(cost.points[int(np.argmax(cost.scores))], *AGAIN)
+            ascent.execute(cost.points[int(np.argmax(cost.scores))], *AGAIN)
 
 
 def evolution_then_ascent(cost: Budget, random: np.random.Generator, runs: int) -> None:
     """Two thirds differential evolution, then uphill from the best."""
     found = _evolved(cost, random, runs)
-    Ascent(cost.tried, cost.criteria, LOOP_LIMITS).carry_out(found, *ASCENT)
+    Ascent(cost.tried, cost.criteria, LOOP_LIMITS).execute(found, *ASCENT)
 
 
 def rectangles_then_ascent(cost: Budget, random: np.random.Generator, runs: int) -> None:
     """A third DIRECT, then uphill from its best."""
     del random
     found = direct(cost, _bounds(cost), maxfun=round(0.33 * runs), locally_biased=True)
-    Ascent(cost.tried, cost.criteria, LOOP_LIMITS).carry_out(found.x, *ASCENT)
+    Ascent(cost.tried, cost.criteria, LOOP_LIMITS).execute(found.x, *ASCENT)
 
 
 def evolution_then_simplex(cost: Budget, random: np.random.Generator, runs: int) -> None:
@@ -124,7 +124,7 @@ def rectangles(cost: Budget, random: np.random.Generator, runs: int) -> None:
 
 
 def covariance(cost: Budget, random: np.random.Generator, runs: int) -> None:
-    """CMA-ES from the start, begun anew with more members where it has converged."""
+    """CMA-ES from the start, started again with more members where it has converged."""
     cma = importlib.import_module("cma")
     settings = {"bounds": [0, 1], "seed": int(random.integers(1, 2**31)), "verbose": -9, "maxfevals": runs}
     cma.fmin2(cost, cost.start, 0.25, settings, restarts=9, bipop=True)

@@ -92,7 +92,7 @@ def main() -> None:
     wire_s()
     rows = (
         ("hil tune, one, processor time", cpu),
-        (f"hil tune, {EVALUATIONS}, processor time, processes begun and ended", spent),
+        (f"hil tune, {EVALUATIONS}, processor time, processes started and ended", spent),
         (f"the same by the clock, {pool.processes} processes", whole),
         ("python-control, speed loop alone, linear, one, processor time", python_control_s()),
         ("over the simulated wire, one, processor time", wire_s()),

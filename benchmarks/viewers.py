@@ -4,8 +4,8 @@
 that bench, and runs on it, in turns without viewers and with them. The run's processes have the first
 processor; the stand-in shares the second with service and viewers, which are niced. Asked: no sample lost, no
 cycle missed, 20 updates a second for each viewer, the 99th percentile of the loop's lateness at most twice
-that without them. Cycles that were missed while the processor itself stood still (see `standstills`) are told
-apart.
+that without them. Cycles that were missed while the processor itself stood still (see `standstills`) are
+reported apart.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ import psutil
 
 from benchmarks.requests import requests_of
 from benchmarks.standstills import Standstills, looking
+from hil.api_schemas.api import OVER
 from hil.core.conventions import TICK_S
 from hil.core.result import PeriodicRequests, RunResult
-from hil.messages.api import OVER
 from tests.hil.cli.test_sim_bench import serving
 from tests.hil.service.served import Served, served
 

@@ -18,8 +18,7 @@ from drivers.device import (
 from drivers.dyno import DynoDriver, DynoNodes, DynoTable, read_dyno
 from drivers.examination import Examinable, Examined, Finding, Identifies, Incomplete
 from drivers.frame_source import Binding, CountedBy, FrameSource
-from drivers.listening_wire import ListeningWire
-from drivers.log_wire import LogWire
+from drivers.listening_wire import ListeningWire, LogWire
 from drivers.loop import BusLoop
 from drivers.measurement import SampleAssembler
 from drivers.newest_frames import NewestFrames

@@ -22,7 +22,7 @@ class StreamTiming:
 
     `offset_s`, `drift_ppm`: its clock against the time base, for the time base against the bench's clock;
     `latest_s`: by how much the latest frame came after its time; `lost`: samples of which no frame came;
-    `left_out`: frames that came, but nobody can say of which sample.
+    `left_out`: frames that came, but no one can say of which sample.
     """
 
     stream: Stream
@@ -52,7 +52,7 @@ class Waiting:
         self.stamps: Array = np.zeros(0)
         self._values: Array = np.zeros((0, len(stream.channels)))
         self.new: list[Samples] = []
-        self._uncertain = (_NOTHING, np.zeros(0), self._values)  # counts, arrivals and values
+        self._uncertain = (_NOTHING, np.zeros(0), self._values)  # counts, arrival times and values
         self._came = 0
         self._unwanted = 0  # of what is uncertain or new, the first are only learned from
         self.first: int | None = None

@@ -27,7 +27,7 @@ _MANY = 100
 
 
 class BusHealth:
-    """Looks at one bus; every fault is told once."""
+    """Looks at one bus; every fault is reported once."""
 
     def __init__(self, name: str, interface: str = "", bus: can.BusABC | None = None) -> None:
         self._name, self._interface = name, interface

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.compiled import compiled
-from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock, most_frame_bits
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, UNSTUFFED, FrameBlock, most_frame_bits
+from hil.core.runtime.compiled import compiled
 
-_UNSTUFFED = 13  # CRC delimiter, acknowledge slot and delimiter, end of frame (7), intermission (3)
 _POLYNOMIAL, _CRC_BITS = 0x4599, 15
 _RUN = 5  # after so many equal bits the sender puts one of the other kind
 
@@ -77,5 +76,5 @@ def _bits(ids, flags, lengths, payloads):  # type: ignore[no-untyped-def]
             if run == _RUN:
                 stuffed += 1
                 last, run = 1 - bit, 1
-        found[frame] = covered + _CRC_BITS + stuffed + _UNSTUFFED
+        found[frame] = covered + _CRC_BITS + stuffed + UNSTUFFED
     return found

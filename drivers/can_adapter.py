@@ -13,7 +13,7 @@ from typing import Any
 import can
 
 from hil.core.errors import BenchError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 
 _LOG = logging.getLogger(__name__)
 
@@ -151,23 +151,23 @@ def enlarged(port: socket.socket, wanted_bytes: int) -> int:
 
 
 def _not_opened(settings: CanSettings, error: Exception) -> BenchError:
-    said = printable(str(error).strip().partition("\n")[0], 200) or type(error).__name__
+    words = printable(str(error).strip().partition("\n")[0], 200) or type(error).__name__
     software = _SOFTWARE.get(settings.interface)
-    library = isinstance(error, OSError) and "library not found" in said
+    library = isinstance(error, OSError) and "library not found" in words
     if software and (isinstance(error, _NOT_THERE) or library):
-        what, fix = f"cannot be opened: its driver is not installed ({said})", f"install {software}"
+        what, fix = f"cannot be opened: its driver is not installed ({words})", f"install {software}"
     elif settings.interface == "socketcand" and isinstance(error, OSError):
         address = f"{settings.options.get('host')}:{settings.options.get('port')}"
-        what = f"cannot be opened: no socketcand answers at {printable(address, 80)} ({said})"
+        what = f"cannot be opened: no socketcand answers at {printable(address, 80)} ({words})"
         fix = "start socketcand there, or correct host and port under options in the bench file"
     elif settings.interface == "socketcan":
-        what = f"cannot be opened: {said}"
+        what = f"cannot be opened: {words}"
         if getattr(error, "errno", None) == errno.EAFNOSUPPORT:
             fix = "this system has no SocketCAN: 'modprobe can_raw', or use another interface"
             return BenchError(what, where=settings.where, fix=fix)
         up = f"ip link set {printable(settings.channel, 20)} up type can bitrate {settings.bit_rate}"
         fix = f"'ip link show type can' lists the interfaces there are, '{up}' brings one up"
     else:
-        what = f"cannot be opened: {said}"
+        what = f"cannot be opened: {words}"
         fix = "check [buses] in the bench file, the adapter and its driver"
     return BenchError(what, where=settings.where, fix=fix)

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers.samples import SampleSource
+from hil.core.can.signals import Payloads
 from hil.core.controller import Controller
-from hil.core.signals import Payloads
 from hil.core.vehicle import VehicleAndRoad
 
 
@@ -33,7 +33,7 @@ class Device(Protocol):
 
     @property
     def heartbeat_s(self) -> float | None:
-        """How often `beat` is called, seconds; None: it watches nobody."""
+        """How often `beat` is called, seconds; None: it watches no one."""
         ...
 
     @property
@@ -76,7 +76,7 @@ class MotorControl(Device, Protocol):
 
     @property
     def state(self) -> str:
-        """off, torque, driving_force, fault; empty before it has said anything."""
+        """off, torque, driving_force, fault; empty before its first answer."""
         ...
 
     @property
@@ -111,7 +111,7 @@ class MotorControl(Device, Protocol):
 
 @runtime_checkable
 class TakesBack(Protocol):
-    """A `MotorControl` whose requests are counted, and that can be told that some were never sent."""
+    """A `MotorControl` whose requests are counted, and that can take back those never sent."""
 
     def take_back(self, count: int) -> None:
         """The last `count` payloads made by `requests` will not be sent: the next go on from before them."""
@@ -124,7 +124,7 @@ class SaysEmergency(Protocol):
 
     @property
     def emergency(self) -> str:
-        """What it said; empty if nobody did."""
+        """What it answered; empty if no one did."""
         ...
 
 
@@ -188,7 +188,7 @@ class SetsVehicle(Protocol):
 
 @runtime_checkable
 class SetsSlip(Protocol):
-    """A `WheelLoad` whose vehicle can be told to slip. One need not be."""
+    """A `WheelLoad` whose vehicle can slip. One need not be."""
 
     def set_slip(self, slip: float) -> None:
         """Have the vehicle slip by this share of its wheels' speed from now on, and read it back.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from typing import NamedTuple
 
-from hil.core.frames import SENT_BY_HOST, FrameBlock
+from hil.core.can.frames import SENT_BY_HOST, FrameBlock
 
 _MOST = 4096  # frames; who fetches none for seconds wants none
 
@@ -22,7 +22,7 @@ class Echoes:
     """Tells own frames that come back from those of others, and keeps them until they are fetched.
 
     SocketCAN marks every frame of a process of this machine, and a simulated bench may be one: an echo is
-    what was sent and has not come back yet. Bounded: what nobody fetches is forgotten.
+    what was sent and has not come back yet. Bounded: what no one fetches is forgotten.
     """
 
     def __init__(self) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers.sample_clock import Array, Numbers, SampleClock
-from hil.core.compiled import compiled
+from hil.core.runtime.compiled import compiled
 
 _AWAITED_S = 0.2  # a frame that is late by more than a turn may be followed, for so long, by one that is not
 _KEPT = 500  # counted frames that followers may still be asked about
@@ -15,7 +15,7 @@ _PROOF = 5  # frames at the end of a run that must agree on a loss
 _NOTHING = np.zeros(0, np.int64)
 _NO_FATES = np.zeros(0, np.int8)
 
-#: What becomes of a frame: it has a number of its own, it is a copy of another, nobody can say which it is.
+#: What becomes of a frame: it has a number of its own, it is a copy of another, no one can say which it is.
 PLACED, COPY, DOUBTFUL = 0, 1, 2
 Fates = npt.NDArray[np.int8]
 
@@ -50,12 +50,12 @@ class FrameCount:
 
         Args:
             counts: without turns, as the frames came; those that were not certain before come again.
-            arrivals: of the frames, s, bench clock.
+            arrival_times: of the frames, s, bench clock.
             everything: nothing more will come.
         """
         if not len(counts):
             return _NOTHING, _NO_FATES
-        if not self._clock.begun:
+        if not self._clock.started:
             self._clock.guess(counts, arrival_times)
         turns, end, fates = self._turns(counts, arrival_times, everything)
         numbers = counts[:end] + self._behind + self.turn * turns[:end]
@@ -78,7 +78,7 @@ class FrameCount:
         turns = np.minimum.accumulate(behind[::-1])[::-1]
         fates = np.zeros(len(turns), np.int8)
         if not turns[-1]:
-            return turns, len(turns), fates  # the newest is in time: nobody lacks anything
+            return turns, len(turns), fates  # the newest is in time: no one lacks anything
         young = int(np.searchsorted(np.maximum.accumulate(arrival_times), np.max(arrival_times) - _AWAITED_S))
         waits = young + int(np.argmax(turns[young:] > 0))
         if everything:
@@ -111,7 +111,7 @@ class FrameCount:
         """Numbers of frames that have no count of their own, and what becomes of each.
 
         Between two counted frames, one sample apart, lies one frame of each follower; between two that lie
-        further apart all that the lost ones left, if none of the followers is missing, else nobody can say
+        further apart all that the lost ones left, if none of the followers is missing, else no one can say
         which they are.
 
         Args:
@@ -143,7 +143,7 @@ def _follow(keys, counts, numbers, opens, found, fates):  # type: ignore[no-unty
         end = first + 1
         while end < len(keys) and (after == len(counts) or keys[end] < counts[after]):
             end += 1
-        if after == len(counts):  # nobody knows yet how many belong here, but the first one does
+        if after == len(counts):  # no one knows yet how many belong here, but the first one does
             if opens and end == first + 1 and keys[first] == counts[after - 1]:
                 found[first], fates[first] = numbers[after - 1], PLACED
                 return end

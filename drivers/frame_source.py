@@ -9,10 +9,10 @@ import numpy as np
 
 from drivers.newest_frames import least_bytes
 from drivers.samples import Counting, Samples, Stream
-from hil.core.checksum import crc8_of
-from hil.core.compiled import compiled
-from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock
-from hil.core.signals import Signal, bits_at, number_at
+from hil.core.can.checksum import crc8_of
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, FrameBlock
+from hil.core.can.signals import Signal, bits_at, number_at
+from hil.core.runtime.compiled import compiled
 
 _NONE_YET = -1
 _OTHER_KINDS = EXTENDED | ERROR_FRAME  # an extended frame of the same number is another message
@@ -49,8 +49,8 @@ class FrameSource:
 
     The streams are in the order in which the bindings name their frames first; a frame that only counts is
     the last, without channels. Frames of a bus without `counted_by` have the times at which they came.
-    `checked` are frames by identifier with the signal of their checksum (`hil.core.checksum`, byte 7): one
-    whose checksum is not that of its content is left out.
+    `checked` are frames by identifier with the signal of their checksum (`hil.core.can.checksum`, byte 7):
+    one whose checksum is not that of its content is left out.
     """
 
     def __init__(

@@ -23,10 +23,10 @@ def frame(stamp: float, kind: int, state: int, *, received: int = 0, sent: int =
     return can.Message(stamp, kind, True, is_error_frame=True, data=data, dlc=_LENGTH)
 
 
-def joined(stamp: float, told: Sequence[tuple[int, int]]) -> can.Message | None:
+def joined(stamp: float, ancillary: Sequence[tuple[int, int]]) -> can.Message | None:
     """One error frame of several classes and states; None for none."""
     kind = state = 0
-    for one, other in told:
+    for one, other in ancillary:
         kind, state = kind | one, state | other
     return frame(stamp, kind, state) if kind else None
 

@@ -11,11 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers.wire import Wire
-from hil.core.clock import Clock
-from hil.core.compiled import compiled
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
 from hil.core.conventions import TICK_S
 from hil.core.errors import InterruptError
-from hil.core.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
+from hil.core.runtime.clock import Clock
+from hil.core.runtime.compiled import compiled
 
 _DRAIN_EVERY = 10
 _GIVEN_UP_TICKS = 10  # who is later than this goes on from where it is

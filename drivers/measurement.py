@@ -18,7 +18,7 @@ _BOTH_SIDES = (
     ("dyno_torque_ref_nm", "dyno_torque_left_nm", "dyno_torque_right_nm", True),
 )
 _NEAREST_WITHIN = 2.5  # sample times; beyond, a value is missing (NaN)
-_GIVEN_UP_S = 0.1  # a stream that is silent for this long holds up nobody
+_GIVEN_UP_S = 0.1  # a stream that is silent for this long holds up no one
 _SLOWER = 1.5  # sample times; a stream slower than this leaves rows without a value
 
 

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from hil.core.compiled import compiled
-from hil.core.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
-from hil.core.signals import Signal
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
+from hil.core.can.signals import Signal
+from hil.core.runtime.compiled import compiled
 
 _OTHERS = SENT_BY_HOST | EXTENDED | ERROR_FRAME
 

@@ -1,4 +1,4 @@
-"""When a device took its samples: a line through arrivals over sample numbers that no late frame bends."""
+"""When a device took its samples: a line of arrival times over sample numbers that no late frame bends."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.compiled import compiled
+from hil.core.runtime.compiled import compiled
 
 Array = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.int64]
@@ -21,7 +21,7 @@ _FOR_SLOPE = 4  # stretches below which the device's clock is taken for as fast 
 _PART = 25  # samples of a stretch that are looked at on their own while there are few stretches
 _LARGEST_DRIFT = 1e-3  # quartz is off by a tenth of it at most
 _BEFORE = 3  # stretches before these that say where it lay
-_STEPPED = 15  # stretches in succession that lie aside before two clocks are said to have parted
+_STEPPED = 15  # stretches in succession that lie aside before two clocks count as parted
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class SampleClock:
     Frames come late, in bunches or after a pause, but none comes before it was sent. So of each stretch of
     `_STRETCH` samples only the earliest arrival is looked at, and a line through the newest `_STRETCHES` of
     these, by medians (H. Theil 1950, P. K. Sen 1968), gives a sample's time. What is constant in the way
-    from device to bench cannot be told from a clock that is off, and stays in the times.
+    from device to bench cannot be distinguished from a clock that is off, and stays in the times.
     """
 
     def __init__(self, period_s: float) -> None:
@@ -53,7 +53,7 @@ class SampleClock:
         self.latest_s = 0.0
 
     @property
-    def begun(self) -> bool:
+    def started(self) -> bool:
         """Whether it has seen anything."""
         return self._origin is not None
 
@@ -62,25 +62,25 @@ class SampleClock:
         """How many stretches are whole."""
         return len(self._stretches) // 2
 
-    def guess(self, numbers: Numbers, arrivals_s: Array) -> None:
+    def guess(self, numbers: Numbers, arrival_times_s: Array) -> None:
         """Begin with numbers that may yet turn out to lack some."""
-        self._origin = (int(numbers[0]), float(arrivals_s[0]))
-        self._level_s = float(np.min(self._delays(numbers, arrivals_s)[:_STRETCH]))
+        self._origin = (int(numbers[0]), float(arrival_times_s[0]))
+        self._level_s = float(np.min(self._delays(numbers, arrival_times_s)[:_STRETCH]))
 
-    def learn(self, numbers: Numbers, arrivals_s: Array) -> None:
-        """Take the arrivals (s, bench clock) of samples, in any order."""
+    def learn(self, numbers: Numbers, arrival_times_s: Array) -> None:
+        """Take the arrival times (s, bench clock) of samples, in any order."""
         if not len(numbers):
             return
         if self._origin is None:
-            self._origin = (int(numbers[0]), float(arrivals_s[0]))
+            self._origin = (int(numbers[0]), float(arrival_times_s[0]))
         number, time_s = self._origin
         if self._known <= _FEW:
-            delays = self._delays(numbers, arrivals_s)
+            delays = self._delays(numbers, arrival_times_s)
             self._parts += [float(np.min(delays[at : at + _PART])) for at in range(0, len(delays), _PART)]
         found = np.empty((len(numbers) // _STRETCH + 1, 2))
         known = self._known > 0
         count, late_s = _least(
-            numbers, arrivals_s, number, time_s, self.period_s, self._slope, self._open, found
+            numbers, arrival_times_s, number, time_s, self.period_s, self._slope, self._open, found
         )
         if known:
             self.latest_s = max(self.latest_s, late_s - self._level_s)
@@ -120,7 +120,7 @@ class SampleClock:
 
     @property
     def disorder(self) -> float:
-        """How badly numbers and arrivals go together: what a stretch is off the bench's clock, in samples."""
+        """How badly numbers and arrival times agree: offset of a stretch from the bench's clock, samples."""
         return abs(self._slope) / self.period_s * _STRETCH + self.spread_s / self.period_s
 
     def parted_from(self, base: SampleClock | None) -> str:
@@ -144,10 +144,10 @@ class SampleClock:
         beside = delays - self._slope * places
         return np.asarray(beside[-_STEPPED:] - np.median(beside[:-_STEPPED]))
 
-    def _delays(self, numbers: Numbers, arrivals_s: Array) -> Array:
+    def _delays(self, numbers: Numbers, arrival_times_s: Array) -> Array:
         assert self._origin is not None
         number, time_s = self._origin
-        return np.asarray((arrivals_s - time_s) - (numbers - number) * self.period_s)
+        return np.asarray((arrival_times_s - time_s) - (numbers - number) * self.period_s)
 
     def _fit(self) -> None:
         if not self._stretches:

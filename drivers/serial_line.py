@@ -7,7 +7,7 @@ import select
 from typing import Any
 
 from hil.core.errors import BenchError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 
 _ROOM_WITHIN_S = 0.005
 

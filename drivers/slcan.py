@@ -19,7 +19,7 @@ from can.interfaces.slcan import slcanBus
 from drivers import linux_errors as errors
 from drivers.serial_line import written_at_once
 
-_QUIET_S = 0.02  # after this long without an answer the adapter has said all to being opened
+_QUIET_S = 0.02  # after this long without an answer the adapter has answered all that opening asks
 _ANSWERED_S = 0.1  # and after this long even if its bus is never quiet
 _LONGEST_LINE = 200
 _NO_LINE = b"?"  # begins nothing that an adapter says

@@ -32,7 +32,7 @@ File = Annotated[Path, Field(strict=False)]
 
 @dataclass(frozen=True)
 class VehicleParameters:
-    """What the dynos' vehicle model is told; None leaves the value that the controller has."""
+    """What the dynos' vehicle model is set to; None leaves the value that the controller has."""
 
     wheel_radius_m: float = 0.33
     slip: float = 0.0
@@ -109,11 +109,11 @@ class DeviceTable(BaseModel):
         return ()
 
     def sends_by_itself(self) -> bool:
-        """Whether frames of the device come on its bus though nobody has asked for any."""
+        """Whether frames of the device come on its bus though no one has asked for any."""
         return True
 
     def bits_each_second(self) -> float:
-        """Of the frames on its bus that come and go all the time, stuff bits included; 0: nobody knows."""
+        """Of the frames on its bus that come and go all the time, stuff bits included; 0: no one knows."""
         return 0.0
 
     def files(self) -> list[Path]:

@@ -12,9 +12,7 @@ import numpy.typing as npt
 
 from drivers.bus_health import BusHealth
 from drivers.echoes import Echoes
-from hil.core.clock import Clock
-from hil.core.errors import BenchError
-from hil.core.frames import (
+from hil.core.can.frames import (
     ERROR_FRAME,
     EXTENDED,
     FRAME,
@@ -25,8 +23,10 @@ from hil.core.frames import (
     inserted,
     joined,
 )
-from hil.core.printable import printable
-from hil.core.signals import Payloads
+from hil.core.can.signals import Payloads
+from hil.core.errors import BenchError
+from hil.core.errors.wording import printable
+from hil.core.runtime.clock import Clock
 
 _LOG = logging.getLogger(__name__)
 
@@ -63,11 +63,11 @@ _FULL_WORDS = ("buffer full", "queue full", "queue is full", "buffer overflow", 
 class Wire:
     """One bus, used from one thread, without a receive thread that could die unseen.
 
-    A bus that has a `recv_block` of its own (see `hil.core.frames`) is drained with it, or with
+    A bus that has a `recv_block` of its own (see `hil.core.can.frames`) is drained with it, or with
     `recv_epoch_block`, whose stamps count from 1970; any other message by message. A bus that has
     `send_frame(id, data)` is given no message object. The result is the same.
 
-    Frames that no device of a bench sends are left out, and told in the log: remote frames, and CAN FD frames
+    Frames that no device of a bench sends are left out and logged: remote frames, and CAN FD frames
     of more than 8 bytes.
 
     Args:
@@ -157,7 +157,7 @@ class Wire:
         """Frames with the stamps that they would have had if the adapter's clock had not jumped.
 
         An old frame must not be taken for news, nor news for an old frame: the way to the safe state is read
-        back by them. That it jumped is told by `check`.
+        back by them. `check` reports that it jumped.
         """
         now_s = self._clock.now_s()
         if self._jumped_s:
@@ -271,10 +271,10 @@ class Wire:
             _LOG.warning("bus '%s': %s are left out", self.name, what)
 
     def _failed(self, doing: str, error: Exception) -> BenchError:
-        said = printable(str(error).strip(), 200)
+        library_text = printable(str(error).strip(), 200)
         reason = _reason(error)
         return BenchError(
-            f"{doing} failed: {reason} ({said})" if reason else f"{doing} failed: {said}",
+            f"{doing} failed: {reason} ({library_text})" if reason else f"{doing} failed: {library_text}",
             where=f"bus '{self.name}'",
             fix=_FIX,
         )

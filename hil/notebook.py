@@ -1,6 +1,6 @@
 """The bench from Python, in few lines: docs/how-to/notebook.md.
 
-Runs are carried out by the command `hil run` in a process of its own, so that a kernel that is interrupted or
+Runs are executed by the command `hil run` in a process of its own, so that a kernel that is interrupted or
 restarted leaves the bench as safe as a terminal would. The rest is computed here.
 """
 
@@ -67,7 +67,7 @@ def run(
     options: Sequence[str] = (),
     held: Sequence[int] = (),
 ) -> Run:
-    """Carry out a plan, as `hil run` does, and write its reports.
+    """Execute a plan, as `hil run` does, and write its reports.
 
     Args:
         plan: file, or the name of a built-in plan.
@@ -104,11 +104,11 @@ def run(
         pass_fds=tuple(held),
         env={**os.environ, _PARENT: str(os.getpid())},
     )
-    said, complaint = _until_safe(process)
+    output, complaint = _until_safe(process)
     failure = next((kind for kind in _CODES if kind.exit_code == process.returncode), None)
     if failure is not None:
-        raise failure(complaint.strip().removeprefix("error: ") or "the command said nothing")
-    return Run(RunResult.model_validate_json(said), Path(out))
+        raise failure(complaint.strip().removeprefix("error: ") or "the command printed nothing")
+    return Run(RunResult.model_validate_json(output), Path(out))
 
 
 def read(path: str | Path) -> Recording:

@@ -11,7 +11,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from hil.core.extras import need
+from hil.core.errors.extras import need
 from hil.core.recording import Recording
 from test_plans import Conductor, Outlook, Pace, Step
 from test_plans.steps import Name, designed_file
@@ -30,7 +30,7 @@ class IdentifyStep(Step):
         default=None, ge=2, le=7, description="order of the fit; default: chosen from the data"
     )
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         """Fit, and keep model.toml, physical.toml, frf.csv and figures."""
         need("scipy")
         conductor.analyse(self.kind, self._work, (MODEL, CHAIN, RESPONSES))
@@ -66,7 +66,7 @@ class DesignStep(Step):
     optimize: bool = Field(default=False, description="optimise lead and pole for the lowest sensitivity")
     torque_limit_nm: float = Field(default=150.0, gt=0, description="largest |T_m*|")
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         """Design, and keep the controller and its figures."""
         need("scipy")
         conductor.analyse(f"{self.kind} {self.name}", self._work, (str(designed_file(self.name)),))

@@ -11,12 +11,12 @@ TABLE = "identification"
 
 
 def identification_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...]:
-    """What each device, or each part of one, said that it is; without a result from the recording alone."""
+    """What each device, or each part of one, identified as; without a result from the recording alone."""
     if result is not None:
         identities = result.identities
     else:
-        said = recording.metadata.get(TABLE, {})
-        identities = tuple(_identity(key, value) for key, value in said.items())
+        values = recording.metadata.get(TABLE, {})
+        identities = tuple(_identity(key, value) for key, value in values.items())
     parts: dict[str, list[Identity]] = {}
     for identity in identities:
         part = identity.name.rpartition(": ")[0]
@@ -32,7 +32,7 @@ def _identity(key: str, value: str) -> Identity:
 def _in_words(identities: list[Identity]) -> str:
     lines = []
     for identity in identities:
-        text = f"{identity.name.rpartition(': ')[2]} {identity.value or 'not said'}"
+        text = f"{identity.name.rpartition(': ')[2]} {identity.value or 'not values'}"
         lines.append(text if identity.matches else f"{text} ({identity.expected} was expected)")
     return ", ".join(lines)
 

@@ -53,13 +53,13 @@ def _lead(found: Findings, wanted: float | None) -> str:
 
 def _parts(found: Findings, drawn: Mapping[str, Drawing], *, random: bool) -> list[Part]:
     interval = f" The interval holds the true share with {CONFIDENCE:.0%} (Clopper and Pearson)."
-    words = "A simulation passes if each of its criteria does; one that could not be carried out does not."
+    words = "A simulation passes if each of its criteria does; one that could not be executed does not."
     parts = [
         Part("shares", "Pass rates", words + interval * random, (_shares(found, random),)),
         Part(
             "criteria",
             "Criteria",
-            "Shares of the simulations that were carried out; quantiles of the values.",
+            "Shares of the simulations that were executed; quantiles of the values.",
             tuple(_criteria(one, found) for one in found.controllers),
         ),
         Part("distributions", "Distributions", "", figures=tuple(drawn.values())),

@@ -153,9 +153,9 @@ def _inputs(found: Comparison) -> tuple[Table, ...]:
     first, *others = found.runs
     tables = []
     for other in others:
-        told = differences(first, other)
-        rows = [(str(one.kind), one.name, _cut(one.first), _cut(one.other)) for one in told[:_MOST_INPUTS]]
-        left = len(told) - len(rows)
+        inputs = differences(first, other)
+        rows = [(str(one.kind), one.name, _cut(one.first), _cut(one.other)) for one in inputs[:_MOST_INPUTS]]
+        left = len(inputs) - len(rows)
         rows += [(f"{left} further", "", "", "")] if left > 0 else []
         if rows:
             tables.append(Table(("file", "parameter", first.name, other.name), tuple(rows), 2))

@@ -19,7 +19,7 @@ from reports.provenance import ControllerTable, Fact, StoredFile
 from reports.sections import sections
 from reports.summary import Summary, summary
 
-_HEADLINE = {"pass": "Passed", "fail": "Failed", "error": "Error", "unjudged": "Carried out, nothing judged"}
+_HEADLINE = {"pass": "Passed", "fail": "Failed", "error": "Error", "unjudged": "Executed, nothing judged"}
 _SAFE_STATE = {
     "confirmed": "The bench confirmed its safe state after the run.",
     "not_needed": "No safe state was needed.",
@@ -30,7 +30,7 @@ _SAFE_STATE = {
 
 @dataclass(frozen=True)
 class Banner:
-    """The verdict: `tone` is pass, fail, error, unjudged (carried out, no criterion) or none (no plan).
+    """The verdict: `tone` is pass, fail, error, unjudged (executed, no criterion) or none (no plan).
 
     `alarm` is '' unless the bench may not be safe.
     """

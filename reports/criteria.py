@@ -54,7 +54,7 @@ def criteria_table(result: RunResult) -> CriteriaTable:
     definitions = list(dict.fromkeys(c.definition for c in result.criteria if c.definition))
     segments = {segment.id: segment for segment in result.segments}
     grouped: dict[str, list[CriterionRow]] = {}
-    known: set[str] = set()  # a sensor that fails five criteria is told once
+    known: set[str] = set()  # a sensor that fails five criteria is reported once
     for criterion in result.criteria:
         title = _group_title(criterion, segments)
         number = definitions.index(criterion.definition) + 1 if criterion.definition else 0
@@ -86,13 +86,13 @@ def _group_title(criterion: CriterionResult, segments: dict[str, Segment]) -> st
     id_ = criterion.id.partition(".")[0]
     segment = segments.get(id_)
     if segment is None:
-        return f"{id_} (not carried out)" if criterion.verdict == "not_judged" else "Whole run"
+        return f"{id_} (not executed)" if criterion.verdict == "not_judged" else "Whole run"
     speed = quantities.nominal(segment.initial_speed_km_h, "km/h")
     name = controller_name(segment.controller) if segment.controller else segment.kind.capitalize()
     return f"{name}, {speed} ({segment.id})"
 
 
-def _row(criterion: CriterionResult, definition: int, told: set[str]) -> CriterionRow:
+def _row(criterion: CriterionResult, definition: int, shown: set[str]) -> CriterionRow:
     decimals = _decimals(criterion)
     return CriterionRow(
         id=criterion.id,
@@ -103,8 +103,8 @@ def _row(criterion: CriterionResult, definition: int, told: set[str]) -> Criteri
         margin=quantities.share(criterion.margin),
         verdict=criterion.verdict,
         unmet=criterion.failed or criterion.verdict in ("error", "not_judged"),
-        reason=criterion.reason if criterion.reason not in told else _AS_ABOVE,
-        unmet_because=in_words(criterion) if criterion.reason not in told else _AS_ABOVE,
+        reason=criterion.reason if criterion.reason not in shown else _AS_ABOVE,
+        unmet_because=in_words(criterion) if criterion.reason not in shown else _AS_ABOVE,
         definition=definition,
     )
 

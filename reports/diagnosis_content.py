@@ -16,8 +16,8 @@ from hil.analysis.diagnosis import (
     why_no_step,
 )
 from hil.core.channels import OUTPUTS
-from hil.core.digits import multiple, share
 from hil.core.effects import EFFECTS
+from hil.core.errors.digits import multiple, share
 from hil.core.model import parameter_unit
 from reports import quantities
 from reports.diagnosis_figures import WINDOW_S, overlay_figures, shown_overlay
@@ -34,7 +34,7 @@ _HEADLINES = {
     "unknown": "A gap that no known effect closes",
 }
 _HELD_OUT = "Recordings held out disagree with the model"
-_MOST_WORSE = 3
+MOST_WORSE = 3
 _HALF_INTERVAL = 1.96  # of 95 %, in standard errors
 _DARKEST = 30.0  # error over noise
 _FIGURES = {
@@ -183,7 +183,7 @@ def _what_stays(found: Diagnosis) -> str:
         names = ", ".join(channel_label(c).text.lower() for c in found.open_channels)
         words += f" What stays is more than noise: {names}."
     if found.worse:
-        words += f" Made worse: {'; '.join(found.worse[:_MOST_WORSE])}."
+        words += f" Made worse: {'; '.join(found.worse[:MOST_WORSE])}."
     return words
 
 

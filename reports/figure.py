@@ -1,4 +1,4 @@
-"""What a figure shows, in words and numbers; how it is drawn on screen or on paper is told elsewhere."""
+"""What a figure shows, in words and numbers; how it is drawn on screen or on paper is reported elsewhere."""
 
 from __future__ import annotations
 

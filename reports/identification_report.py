@@ -209,9 +209,9 @@ def _functions(summary: Mapping[str, Any], *, linear: bool) -> Table:
         values = polynomial["values"]
         errors = polynomial["standard_errors"] if linear else [None] * len(values)
         for place, (value, error) in enumerate(zip(values, errors, strict=True)):
-            told = quantities.number(error, significant=2) if error is not None else quantities.DASH
+            shown = quantities.number(error, significant=2) if error is not None else quantities.DASH
             power = f"s^{len(values) - 1 - place}"
-            rows.append((name if place == 0 else "", power, quantities.number(value), told))
+            rows.append((name if place == 0 else "", power, quantities.number(value), shown))
     return Table(("polynomial", "power", "coefficient", "standard error"), tuple(rows), 2)
 
 

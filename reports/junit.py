@@ -99,9 +99,9 @@ def _figures(criterion: CriterionResult) -> dict[str, str]:
         "upper_limit": criterion.upper,
         "margin": criterion.margin,
     }
-    told = {name: repr(value) for name, value in numbers.items() if value is not None}
+    shown = {name: repr(value) for name, value in numbers.items() if value is not None}
     words = {"unit": criterion.unit, "below": criterion.below, "definition": criterion.definition}
-    return {**told, **{name: text for name, text in words.items() if text}, "verdict": criterion.verdict}
+    return {**shown, **{name: text for name, text in words.items() if text}, "verdict": criterion.verdict}
 
 
 def _case(suite: ET.Element, classname: str, name: str, time_s: float = 0.0) -> ET.Element:

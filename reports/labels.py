@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from hil.core.channels import CHANNELS
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 
 _SHORT = {
     "motor_torque_ref_nm": "Torque request",

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hil.core.files import sha256_of
-from hil.core.versions import versions
+from hil.core.runtime.versions import versions
 from reports import quantities
 from reports.parts import Part, Table
 

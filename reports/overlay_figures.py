@@ -11,13 +11,10 @@ from reports import quantities, style
 from reports.figure import Band, Figure, Trace
 from reports.labels import Label, channel_label, channel_unit
 from reports.spectrum import DESCRIPTION, amplitude_spectrum, stretch_in_words
-from reports.step_figures import SPECTRUM_WINDOW_S
+from reports.step_figures import FIRST_SECONDS, SLOW_HZ, SPECTRUM_TO_HZ, SPECTRUM_WINDOW_S
 from reports.stretch import cut, line
 
 _ROLES = ("gain", "phase", "third", "fourth", "fifth", "reference")
-_FIRST_SECONDS = 2.0
-_SPECTRUM_TO_HZ = 30.0
-_SLOW_HZ = 2.0  # what is left of the run-up below this does not set the scale
 
 
 def overlay(runs: tuple[ComparedRun, ...], segment: Segment) -> tuple[Figure, ...]:
@@ -25,9 +22,9 @@ def overlay(runs: tuple[ComparedRun, ...], segment: Segment) -> tuple[Figure, ..
     figures: list[Figure | None] = []
     if segment.kind == "step":
         figures = [
-            _response(runs, segment.id, "shaft_torque_nm", "first", until_s=_FIRST_SECONDS),
+            _response(runs, segment.id, "shaft_torque_nm", "first", until_s=FIRST_SECONDS),
             _difference(runs, segment.id, "shaft_torque_nm"),
-            _response(runs, segment.id, "motor_speed_rad_s", "first", until_s=_FIRST_SECONDS),
+            _response(runs, segment.id, "motor_speed_rad_s", "first", until_s=FIRST_SECONDS),
             _spectrum(runs, segment.id, "motor_speed_rad_s"),
         ]
     else:
@@ -70,7 +67,7 @@ def _response(
     if not traces:
         return None
     label = channel_label(channel)
-    tail = f", first {_FIRST_SECONDS:g}{quantities.THIN}s" if np.isfinite(until_s) else ""
+    tail = f", first {FIRST_SECONDS:g}{quantities.THIN}s" if np.isfinite(until_s) else ""
     return Figure(
         f"{segment}-{channel}-{suffix}",
         Label(label.text, label.symbol, tail),
@@ -116,14 +113,14 @@ def _spectrum(runs: tuple[ComparedRun, ...], segment: str, channel: str) -> Figu
         spectrum = amplitude_spectrum(*found) if found else None
         if spectrum is None:
             continue
-        shown = spectrum.frequency_hz <= 2 * _SPECTRUM_TO_HZ
+        shown = spectrum.frequency_hz <= 2 * SPECTRUM_TO_HZ
         lengths.append(own.end_s - own.step_s)
         role, dash = _role(index)
         x, y = spectrum.frequency_hz[shown], spectrum.amplitude[shown]
         traces.append(Trace(Label(run.name), x, y, role, dash))
     if not traces:
         return None
-    scale = max(float(t.y[t.x >= _SLOW_HZ].max(initial=0.0)) for t in traces)
+    scale = max(float(t.y[t.x >= SLOW_HZ].max(initial=0.0)) for t in traces)
     label, band = channel_label(channel), COMFORT_BAND_HZ
     return Figure(
         f"{segment}-{channel}-spectrum",
@@ -134,7 +131,7 @@ def _spectrum(runs: tuple[ComparedRun, ...], segment: str, channel: str) -> Figu
         channel_unit(channel),
         tuple(traces),
         bands=(Band(*band, f"{band[0]:g}{quantities.DASH}{band[1]:g}{quantities.THIN}Hz"),),
-        x_range=(0.0, _SPECTRUM_TO_HZ),
+        x_range=(0.0, SPECTRUM_TO_HZ),
         y_range=(0.0, 1.2 * scale) if scale > 0 else None,
         caption=f"{DESCRIPTION}, Hann window, {stretch_in_words(SPECTRUM_WINDOW_S, lengths)}.",
     )

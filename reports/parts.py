@@ -46,7 +46,7 @@ class Cell:
 
     @property
     def level(self) -> int:
-        """Its shade in steps that can be told apart."""
+        """Its shade in steps that can be distinguished."""
         return shades.level(self.shade)
 
 

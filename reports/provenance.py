@@ -11,9 +11,9 @@ from typing import Any
 from hil.core.channels import TIME
 from hil.core.errors import BadInputError
 from hil.core.files import sha256_of
+from hil.core.files.toml_file import parse_toml
 from hil.core.recording import VEHICLE, Recording
 from hil.core.result import Lateness, PeriodicRequests, RunResult
-from hil.core.toml_file import parse_toml
 from reports import quantities
 
 _CONTROLLER = "controller/"

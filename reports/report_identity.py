@@ -62,8 +62,8 @@ def _of_html(report: Path) -> dict[str, str]:
 def _of_pdf(report: Path) -> dict[str, str]:
     from pypdf import PdfReader
 
-    told = getattr(PdfReader(report).metadata, "keywords", None) or ""
-    parts = (part.strip().partition(":") for part in str(told).split(","))
+    stored = getattr(PdfReader(report).metadata, "keywords", None) or ""
+    parts = (part.strip().partition(":") for part in str(stored).split(","))
     return {name: unquote(value) for name, _, value in parts}
 
 

@@ -65,8 +65,8 @@ def _criteria(spread: Sequence[Mapping[str, Any]]) -> Part:
             figures = (one[key] for key in ("mean", "standard_deviation", "lowest", "highest"))
             numbers = ("-" if figure is None else f"{figure:.4g}" for figure in figures)
             values = values_in_words(group["variables"])
-            said = (name, limit_in_words(one), one["verdict"].replace("_", " "), str(one["count"]))
-            rows.append((values, *said, *numbers, quantities.unit(one["unit"])))
+            facts = (name, limit_in_words(one), one["verdict"].replace("_", " "), str(one["count"]))
+            rows.append((values, *facts, *numbers, quantities.unit(one["unit"])))
     table = Table(_HEAD, tuple(rows), numbers_from=4, words_from=9)
     return Part("criteria", "Criteria over the runs", "The verdict is the worst of the runs.", (table,))
 

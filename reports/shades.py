@@ -8,7 +8,7 @@ from reports import style
 
 Theme = Literal["light", "dark"]
 
-#: How many shades there are beside none: colours between them nobody tells apart.
+#: How many shades there are beside none: colours between them no one tells apart.
 DARKEST = 10
 _SHARE = 0.85  # of the colour of failures, in the darkest
 _INKS = ("#000000", "#FFFFFF")  # of any grey one of them stands out by 4.5 to 1 (WCAG 2.2, 1.4.3)

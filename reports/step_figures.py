@@ -21,8 +21,8 @@ from reports.stretch import cut, line
 
 SPECTRUM_WINDOW_S = (4.0, 20.0)
 FIRST_SECONDS = 2.0
-_SPECTRUM_TO_HZ = 30.0
-_SLOW_HZ = 2.0  # what is left of the run-up below this does not set the scale
+SPECTRUM_TO_HZ = 30.0
+SLOW_HZ = 2.0  # what is left of the run-up below this does not set the scale
 _TIME = "Time from the step"
 _MOTOR_SPEED = "motor_speed_rad_s"
 _SHAFT_TORQUE = "shaft_torque_nm"
@@ -169,7 +169,7 @@ class Overlay:
         ]
         if not traces:
             return None
-        scale = max(float(t.y[t.x >= _SLOW_HZ].max(initial=0.0)) for t in traces)
+        scale = max(float(t.y[t.x >= SLOW_HZ].max(initial=0.0)) for t in traces)
         lengths = [member.segment.end_s - member.segment.step_s for member in self._members]
         band = f"{COMFORT_BAND_HZ[0]:g}{quantities.DASH}{COMFORT_BAND_HZ[1]:g}{quantities.THIN}Hz"
         return Figure(
@@ -181,10 +181,10 @@ class Overlay:
             y_unit=channel_unit(channel),
             traces=tuple(traces),
             bands=(Band(*COMFORT_BAND_HZ, band),),
-            x_range=(0.0, _SPECTRUM_TO_HZ),
+            x_range=(0.0, SPECTRUM_TO_HZ),
             y_range=(0.0, 1.2 * scale) if scale > 0 else None,
             caption=f"{DESCRIPTION}, Hann window, {stretch_in_words(SPECTRUM_WINDOW_S, lengths)}. "
-            f"The scale is set by {_SLOW_HZ:g}{quantities.THIN}Hz and above.",
+            f"The scale is set by {SLOW_HZ:g}{quantities.THIN}Hz and above.",
         )
 
     def _spectrum(self, member: Member, name: str) -> list[Trace]:
@@ -194,7 +194,7 @@ class Overlay:
         spectrum = amplitude_spectrum(*found) if found else None
         if spectrum is None:
             return []
-        shown = spectrum.frequency_hz <= 2 * _SPECTRUM_TO_HZ
+        shown = spectrum.frequency_hz <= 2 * SPECTRUM_TO_HZ
         label = self._named(member, f"band_energy_{_short(name)}", "band energy")
         frequency, amplitude = spectrum.frequency_hz[shown], spectrum.amplitude[shown]
         return [Trace(label, frequency, amplitude, member.role, member.dash)]

@@ -60,7 +60,7 @@ PAPER_WIDTH_MM = 84.0
 PAPER_HEIGHT_MM = 52.0
 PAPER_WIDE_MM = (172.0, 42.0)
 
-#: What Matplotlib is told, in points.
+#: What Matplotlib is given, in points.
 PAPER: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 6.6,

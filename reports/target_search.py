@@ -11,11 +11,11 @@ from reports import quantities
 from reports.figure import Figure, Level
 from reports.labels import Label, channel_label, channel_unit, criterion_title, with_titles
 from reports.parts import Page, Part, Table, page_html, page_pdf
+from reports.step_figures import FIRST_SECONDS
 from reports.stretch import line
 
 _ROLES = ("reference", "gain", "phase", "third", "fourth")
 _DRAWN = 3
-_FIRST_SECONDS = 2.0
 _PEAK = "peak_shaft_torque"
 _SHAFT_TORQUE = "shaft_torque_nm"
 
@@ -69,7 +69,7 @@ def _page(found: Explanation) -> Page:
 def _first(found: Explanation) -> Part:
     """What each candidate reaches of the target values, and the first response beside its target."""
     figures = tuple(replace(figure, wide=True) for figure in _figures(found)[:1])
-    text = f"Values beside the targets. Figure: shaft torque of the first {_FIRST_SECONDS:g} s."
+    text = f"Values beside the targets. Figure: shaft torque of the first {FIRST_SECONDS:g} s."
     return Part("rivals", "Candidates", text, (_rivals(found),), figures=figures)
 
 
@@ -78,7 +78,7 @@ def _parts(found: Explanation) -> list[Part]:
         Part(
             "responses",
             "Responses beside the targets",
-            f"Shaft torque of the first {_FIRST_SECONDS:g} s. Dashed: the target.",
+            f"Shaft torque of the first {FIRST_SECONDS:g} s. Dashed: the target.",
             figures=_figures(found),
         ),
         *(
@@ -155,7 +155,7 @@ def _figure(found: Explanation, segment: str, wanted: float) -> Figure | None:
             Label(name),
             role,
             start_s=own.step_s - 0.1,
-            end_s=min(own.end_s, own.step_s + _FIRST_SECONDS),
+            end_s=min(own.end_s, own.step_s + FIRST_SECONDS),
             zero_s=own.step_s,
         )
         traces += [trace] if trace else []
@@ -173,7 +173,7 @@ def _figure(found: Explanation, segment: str, wanted: float) -> Figure | None:
         channel_unit(_SHAFT_TORQUE),
         tuple(traces),
         levels=(Level(wanted, f"Target {quantities.nominal(wanted, 'N m')}, {segment}"),),
-        x_range=(-0.1, _FIRST_SECONDS),
+        x_range=(-0.1, FIRST_SECONDS),
         y_range=(min(0.0, 1.05 * lowest), 1.1 * max(highest, wanted)),
     )
 

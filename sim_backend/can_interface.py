@@ -9,7 +9,7 @@ import can
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.frames import FrameBlock
+from hil.core.can.frames import FrameBlock
 from sim_backend.bench import SimulatedBench
 
 _BENCHES: dict[str, SimulatedBench] = {}

@@ -1,9 +1,9 @@
 """Frames of a CAN bus in UDP datagrams, between processes of one machine.
 
 A datagram is a head (magic, version, kind, number of frames, sequence number of its first frame, counted for
-each direction by itself) and then frames as `hil.core.frames.FRAME` lays them out, their stamps in seconds
-since 1970. The hub's welcome carries the bit rate and the time scale in place of frames. Little-endian
-throughout.
+each direction by itself) and then frames as `hil.core.can.frames.FRAME` lays them out, their stamps in
+seconds since 1970. The hub's welcome carries the bit rate and the time scale in place of frames.
+Little-endian throughout.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from hil.core.frames import FRAME, FrameBlock
+from hil.core.can.frames import FRAME, FrameBlock
 
 LOOPBACK = "127.0.0.1"
 LARGEST = 1 << 16

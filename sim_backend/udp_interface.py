@@ -16,7 +16,7 @@ from typing import Any
 import can
 import numpy as np
 
-from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock, empty_block, joined
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock, empty_block, joined
 from sim_backend.datagrams import (
     LARGEST,
     Incoming,
@@ -93,7 +93,7 @@ class LoopbackBus(can.BusABC):
         """Put a data frame on the bus.
 
         Raises:
-            CanOperationError: nobody serves the bus any more, or the frame is one of CAN FD.
+            CanOperationError: no one serves the bus any more, or the frame is one of CAN FD.
         """
         if len(data) > _LONGEST_DATA:
             raise can.CanOperationError(f"a frame has at most {_LONGEST_DATA} bytes here, not {len(data)}")
@@ -105,7 +105,7 @@ class LoopbackBus(can.BusABC):
         """All frames that arrived until now; stamps in seconds since 1970, as the sending side gave them.
 
         Raises:
-            CanOperationError: nobody serves the bus any more.
+            CanOperationError: no one serves the bus any more.
         """
         if time.monotonic() - self._hello_s > _HELLO_EVERY_S:
             self._hello_s = time.monotonic()

@@ -9,8 +9,8 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
 from hil.core.errors import BadInputError
-from hil.core.field_words import needed
-from hil.core.suggestion import closest, did_you_mean
+from hil.core.errors.table_mistakes import needed
+from hil.core.errors.wording import closest, did_you_mean
 from test_plans.mistakes import plan_error
 from test_plans.yaml_document import Document, KeyPath
 
@@ -79,7 +79,7 @@ def key_names(model: type[BaseModel]) -> list[str]:
 
 
 def _refuse(model: type[BaseModel], error: ValidationError, document: Document, path: KeyPath) -> NoReturn:
-    # An unknown key is often the misspelling of one that is missing, which then need not be told.
+    # An unknown key is often the misspelling of one that is missing, which then need not be reported.
     unknown = [mistake for mistake in error.errors() if mistake["type"] == "extra_forbidden"]
     meant = {closest(str(mistake["loc"][-1]), key_names(model)) for mistake in unknown}
     others = [mistake for mistake in error.errors() if mistake["type"] != "extra_forbidden"]

@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from hil.core.errors import BadInputError
-from hil.core.printable import printable
-from hil.core.suggestion import did_you_mean
+from hil.core.errors.wording import did_you_mean, printable
 from test_plans.building import build, mapping_at
 from test_plans.variables import EXAMPLE, Variable
 from test_plans.variables import KEY as VARIABLES

@@ -46,7 +46,7 @@ PROMPT_TIMEOUT_S = 600.0
 
 
 class Conductor(Protocol):
-    """Carries out what steps ask for; the engine implements it. Every call blocks until done."""
+    """Executes what steps ask for; the engine implements it. Every call blocks until done."""
 
     #: Distance of the samples given to `play`, seconds.
     sample_time_s: float

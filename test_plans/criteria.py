@@ -7,7 +7,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, Field
 
 from hil.core.errors import BadInputError
-from hil.core.suggestion import did_you_mean
+from hil.core.errors.wording import did_you_mean
 from test_plans.building import Strict, build, key_names, mapping_at
 from test_plans.conductor import PlannedSegment
 from test_plans.metrics import METRICS, Limits, Metric

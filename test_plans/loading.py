@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from hil.core.errors import BadInputError
-from hil.core.file_kind import refuse_other_kind
-from hil.core.suggestion import closest, did_you_mean
-from hil.core.toml_file import parse_toml
+from hil.core.errors.wording import closest, did_you_mean
+from hil.core.files.kinds import refuse_other_kind
+from hil.core.files.toml_file import parse_toml
 from test_plans.building import build, list_at, mapping_at
 from test_plans.choices import Choices
 from test_plans.conductor import PlannedSegment
@@ -46,7 +46,7 @@ def library_controllers() -> dict[str, Path]:
 def load_plan(name_or_path: str | Path, choices: Choices | None = None) -> Plan:
     """Read a plan from a file, or a built-in one by its name.
 
-    With `choices` the plan's text is the one that was chosen: what is carried out, recorded and reported.
+    With `choices` the plan's text is the one that was chosen: what is executed, recorded and reported.
 
     Raises:
         BadInputError: no such plan, or all that is wrong with it: file, line, key, and what to do.
@@ -57,25 +57,25 @@ def load_plan(name_or_path: str | Path, choices: Choices | None = None) -> Plan:
         _refuse_other_file(text, str(path))
     if choices is not None:
         text = choices.applied(text, read_yaml(text, str(path)))
-    plan = plan_from_text(text, str(path), path.parent, to_carry_out=True)
+    plan = plan_from_text(text, str(path), path.parent, to_execute=True)
     logger.info("plan %s: %d steps, %d criteria", path, len(plan.steps), len(plan.criteria))
     return plan
 
 
 def plan_from_text(
-    text: str, where: str, base_dir: Path, *, files_required: bool = True, to_carry_out: bool = False
+    text: str, where: str, base_dir: Path, *, files_required: bool = True, to_execute: bool = False
 ) -> Plan:
     """Check the text of a plan; `where` names it in messages.
 
     Relative controller files are looked for in `base_dir`, then among the built-in ones. With
-    `files_required` false they are not looked for: for a plan that was carried out long ago. With
-    `to_carry_out` it is refused, too, if it asks for driving torque before there is a controller.
+    `files_required` false they are not looked for: for a plan that was executed long ago. With
+    `to_execute` it is refused, too, if it asks for driving torque before there is a controller.
 
     Raises:
         BadInputError: file, line, key, and what to do.
     """
     reader = _Reader(with_values(read_yaml(text, where)), base_dir, files_required)
-    return reader.plan(text, to_carry_out=to_carry_out)
+    return reader.plan(text, to_execute=to_execute)
 
 
 class _Reader:
@@ -85,7 +85,7 @@ class _Reader:
         self._document = document
         self._files = FileSearch((base_dir, LIBRARY / "controllers"), files_required)
 
-    def plan(self, text: str, *, to_carry_out: bool) -> Plan:
+    def plan(self, text: str, *, to_execute: bool) -> Plan:
         document, mistakes = self._document, PlanMistakes()
         content = mapping_at(document.value, document, (), "name: my_plan, then steps:")
         keys: PlanKeys | None = None
@@ -104,7 +104,7 @@ class _Reader:
             end_steps = self._steps(_or_empty(content, "finally"), ("finally",))
             self._refuse_segments_at_the_end(end_steps)
         with mistakes.collected():
-            if steps is not None and to_carry_out:
+            if steps is not None and to_execute:
                 self._refuse_without_controller((*steps, *end_steps), len(steps))
         with mistakes.collected():
             criteria = self._criteria(_or_empty(content, "criteria"), steps)
@@ -179,7 +179,7 @@ class _Reader:
         return build(step_class, values | nested, document, here, self._files)
 
     def _criteria(self, value: object, steps: tuple[Step, ...] | None) -> tuple[Criterion, ...]:
-        """The criteria; where the steps have mistakes, nobody knows which segments there will be."""
+        """The criteria; where the steps have mistakes, no one knows which segments there will be."""
         segments = None if steps is None else {one.id: one for step in steps for one in step.segments()}
         mistakes, seen = PlanMistakes(), dict[str, int]()
         criteria = []
@@ -242,7 +242,7 @@ class _Reader:
         duration = estimate_duration_s(plan)
         if duration > LONGEST_PLAN_S:
             raise BadInputError(
-                f"would take {duration / 3600:.1f} h, at most {LONGEST_PLAN_S / 3600:g} h are carried out",
+                f"would take {duration / 3600:.1f} h, at most {LONGEST_PLAN_S / 3600:g} h are executed",
                 where=self._document.place(("steps",)),
                 fix="split the plan",
             )

@@ -1,4 +1,4 @@
-"""All that is wrong with a plan, told at once."""
+"""All that is wrong with a plan, reported at once."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Iterable, Iterator
 
 from hil.core.errors import BadInputError
-from hil.core.finding_list import listed
+from hil.core.errors.wording import listed
 
 
 class PlanError(BadInputError):

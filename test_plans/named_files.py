@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import did_you_mean
 from hil.core.files import is_file
-from hil.core.suggestion import did_you_mean
 from test_plans.building import brief
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from hil.core.file_format import FORMAT, FormatNumber
+from hil.core.files.kinds import FORMAT, FormatNumber
 from hil.core.result import VariableValue
 from test_plans.building import Strict
 from test_plans.conductor import PlannedSegment
@@ -42,7 +42,7 @@ class PlanKeys(Strict):
 class Plan(PlanKeys):
     """A checked plan; `text` is its YAML as read from `source`.
 
-    `finally_` (in YAML: `finally`) are the steps that are carried out at the end, whatever happened.
+    `finally_` (in YAML: `finally`) are the steps that are executed at the end, whatever happened.
     """
 
     steps: tuple[Step, ...] = Field(min_length=1)
@@ -74,7 +74,7 @@ class Plan(PlanKeys):
 
 
 def estimate_duration_s(plan: Plan, pace: Pace | None = None) -> float:
-    """Bench time of a whole run in seconds, begun at standstill, operator prompts not counted.
+    """Bench time of a whole run in seconds, started at standstill, operator prompts not counted.
 
     Without `pace`, a bench of default pace is assumed. Running resistance is left out.
     """

@@ -7,7 +7,7 @@ from importlib import metadata
 from typing import Generic, TypeVar
 
 from hil.core.errors import BadInputError
-from hil.core.suggestion import did_you_mean
+from hil.core.errors.wording import did_you_mean
 
 T = TypeVar("T")
 

@@ -19,7 +19,7 @@ _MARGIN_S = 1.0  # of a recording around a segment: what filters need
 
 
 def standard_error(metric: Metric, recording: Recording, segment: Segment) -> float:
-    """Standard error of a metric, from the noise of its channel carried through its definition.
+    """Standard error of a metric, from the noise of its channel propagated through its definition.
 
     The noise is white, of the size of the channel's fourth differences, which pass next to nothing below a
     tenth of the sampling rate. It is added anew some times; the spread of the values is the error. 0 where

@@ -6,13 +6,12 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from hil.core.model.schema import DRAFT
 from test_plans.criteria import CriterionKeys
 from test_plans.metrics import METRICS
 from test_plans.plan import PlanKeys
 from test_plans.steps import STEPS
 from test_plans.variables import NAME
-
-_DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def plan_schema() -> dict[str, Any]:
@@ -27,7 +26,7 @@ def plan_schema() -> dict[str, Any]:
     definitions["step"] = _step_schema(definitions)
     definitions["criterion"] = _criterion_schema(definitions)
     return {
-        "$schema": _DRAFT,
+        "$schema": DRAFT,
         "title": "Test plan",
         "type": "object",
         "properties": {

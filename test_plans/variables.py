@@ -13,7 +13,7 @@ from typing import Any, Self
 from pydantic import Field, model_validator
 
 from hil.core.errors import BadInputError
-from hil.core.suggestion import did_you_mean
+from hil.core.errors.wording import did_you_mean
 from test_plans.building import Strict, brief, build, mapping_at
 from test_plans.mistakes import PlanMistakes
 from test_plans.yaml_document import Document, KeyPath
@@ -92,7 +92,7 @@ def with_values(document: Document) -> Document:
 
 
 def _default(entry: object) -> object:
-    """What a variable that is not sound yet stands for is told where the variable stands."""
+    """What a variable that is not sound yet stands for is reported where the variable stands."""
     return entry.get("default", 0) if isinstance(entry, dict) else 0
 
 

@@ -1,7 +1,7 @@
 """`python -m tests.durations [PYTEST'S ARGUMENTS]`: measures what tests take, for tests/gate.py.
 
 Carries the tests out (without arguments those of the gate) and writes the seconds of each that is slow into
-`durations.json`; tests that were not carried out keep theirs. Preparing what a module shares counts for the
+`durations.json`; tests that were not executed keep theirs. Preparing what a module shares counts for the
 module, not for the test that happens to be the first.
 """
 
@@ -19,7 +19,7 @@ _ARGUMENTS = ("-n", "2", "--dist", "worksteal", "-m", "not nightly and not hunt"
 
 
 class Stopwatch:
-    """Seconds of preparing and of carrying out, by test."""
+    """Seconds of preparing and of executing, by test."""
 
     def __init__(self) -> None:
         self.prepared_s: dict[str, float] = {}
@@ -36,7 +36,7 @@ class Stopwatch:
             self.marked.add(report.nodeid)
 
     def written_to(self, file: Path) -> None:
-        """Write the file anew: what was carried out now, and what is there still of before."""
+        """Write the file anew: what was executed now, and what is there still of before."""
         kept = json.loads(file.read_text("utf-8")) if file.exists() else {}
         modules = {nodeid.partition("::")[0] for nodeid in self.took_s}
         kept = {key: value for key, value in kept.items() if key not in self.took_s and key not in modules}

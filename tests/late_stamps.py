@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from can.interfaces import BACKENDS
 
-from hil.core.frames import FrameBlock
+from hil.core.can.frames import FrameBlock
 from sim_backend.can_interface import SimulatedBus
 from sim_backend.udp_interface import LoopbackBus
 from tests.benches_for_tests import sim_bench
@@ -25,14 +25,14 @@ def made_late(stamps: Stamps, late: str, random: np.random.Generator) -> Stamps:
     """Stamps in s of the bench's time, made late.
 
     - "bursts": at the end of the 2 ms in which they came.
-    - "pauses": now and then for 50 ms at the end of them, as if nobody had looked.
+    - "pauses": now and then for 50 ms at the end of them, as if no one had looked.
     - "outliers": now and then one by up to 50 ms.
     """
     if late == "bursts":
         return np.ceil(stamps / 0.002) * 0.002
     if late == "pauses":
-        begun = np.floor(stamps / 0.731) * 0.731  # a pause every 0.731 s
-        return np.maximum(stamps, np.where(stamps < begun + _PAUSE_S, begun + _PAUSE_S, 0.0))
+        started = np.floor(stamps / 0.731) * 0.731  # a pause every 0.731 s
+        return np.maximum(stamps, np.where(stamps < started + _PAUSE_S, started + _PAUSE_S, 0.0))
     if late == "outliers":
         hit = random.random(len(stamps)) < 2e-3
         return stamps + hit * random.uniform(0.02, _PAUSE_S, len(stamps))

@@ -20,7 +20,6 @@ DEBTS = {
     (f"{_DIAGNOSIS}.fit", f"{_DIAGNOSIS}.data"),
     *((f"{_DIAGNOSIS}.search", f"{_DIAGNOSIS}.{room}") for room in ("data", "fit")),
     *((f"{_DIAGNOSIS}.tell", f"{_DIAGNOSIS}.{room}") for room in ("data", "fit", "search")),
-    ("hil.cli.commands", "hil.cli"),
     ("hil.plant.closed_loop", "hil.plant"),
 }
 

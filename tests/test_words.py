@@ -1,4 +1,4 @@
-"""Words that were nobody's have left the names of modules and classes, and do not come back (glossary.md)."""
+"""Words that were no one's have left the names of modules and classes, and do not come back (glossary.md)."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ def _read(directory: Path) -> Measured:
     starts = {
         # the authors' mass and viscous friction, found together with the dry friction that is left out here
         "published": one_mass(95.1089, 203.5034),
-        # mass and viscous friction that suit the recording best where nobody thinks of dry friction
+        # mass and viscous friction that suit the recording best where no one thinks of dry friction
         "linear": one_mass(105.58, 426.54),
     }
     return Measured(starts, [_recording(directory / _FIT)], [_recording(directory / _HELD)])

@@ -33,7 +33,7 @@ def _recording(path: Path) -> Recording:
 
 def _read(directory: Path) -> Measured:
     fit, held = ([_recording(directory / _file(n)) for n in numbers] for numbers in (_FIT, _HELD))
-    # what suits the first three recordings best where nobody thinks of dry friction
+    # what suits the first three recordings best where no one thinks of dry friction
     return Measured({"linear": one_mass(3.474e-4, 1.240e-3)}, fit, held)
 
 

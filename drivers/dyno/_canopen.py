@@ -56,13 +56,13 @@ _ABORTS = {
     0x08000024: "it has no data",
 }
 
-# What the library says of its own (transfers it gives up, frames it does not know) is said by the drivers.
+# What the library says of its own (transfers it gives up, frames it does not know) is stated by the drivers.
 logging.getLogger("canopen").addHandler(logging.NullHandler())
 logging.getLogger("canopen").propagate = False
 
 
 class BrokenOffError(SdoCommunicationError):  # type: ignore[misc]
-    """A transfer that had begun was not carried on: as a whole it can be tried again."""
+    """A transfer that had started was not continued: as a whole it can be tried again."""
 
 
 def abort_in_words(code: int) -> str:

@@ -87,7 +87,7 @@ class DynoDriver:
     def come_up(self) -> None:
         """Bring the nodes to operation: supervision, SYNC, vehicle model. The drives stay without torque.
 
-        An idle node that is missing keeps nobody from anything: it stands in `missing`.
+        An idle node that is missing keeps no one from anything: it stands in `missing`.
 
         Raises:
             BenchError: a rear node is missing, or one does not answer or refuses a value.
@@ -217,7 +217,7 @@ class DynoDriver:
                 node.write(0x2000, subindex, value, name)
 
     def beat(self) -> None:
-        """The host's heartbeat, which the dynos watch; and what they were told last, which may be lost."""
+        """The host's heartbeat, which the dynos watch; and the last requests, which may be lost."""
         self._wire.send(0x700 + self._host, b"\x05")
         for node in self.rear:
             node.repeat()

@@ -9,9 +9,9 @@ from drivers.dyno._node import ENABLED, FAULT, STATE_MASK, DynoNode
 from drivers.examination import Examined, Finding
 from drivers.loop import BusLoop
 from drivers.wire import Wire
+from hil.core.can.frames import SENT_BY_HOST, FrameBlock, standard
 from hil.core.errors import DeviceError
-from hil.core.frames import SENT_BY_HOST, FrameBlock, standard
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 
 _HIGHEST_NODE = 127
 _ANSWERS_WITHIN_S = 0.3
@@ -152,7 +152,7 @@ def _missing(node: DynoNode, bus: str, strangers: Collection[int], *, used: bool
 
 
 def _strangers(loop: BusLoop, wire: Wire, known: Collection[int], *, ask: bool) -> set[int]:
-    """Nodes that nobody expects: by their heartbeats, and by asking every other id for its device type."""
+    """Nodes that no one expects: by their heartbeats, and by asking every other id for its device type."""
     heard: set[int] = set()
 
     def take(bus: str, block: FrameBlock) -> None:

@@ -14,9 +14,9 @@ import numpy.typing as npt
 from drivers.dyno._canopen import SDO_TIMEOUT_S, BrokenOffError, LoopNetwork, LoopNode, abort_in_words
 from drivers.frame_source import Binding
 from drivers.newest_frames import NewestFrames
+from hil.core.can.eds import identifier_of, layout_of_pdo, mapping_of, read_eds
+from hil.core.can.signals import FrameLayout, in_units
 from hil.core.errors import DeviceError
-from hil.core.pdo import identifier_of, layout_of_pdo, mapping_of, read_eds
-from hil.core.signals import FrameLayout, in_units
 
 # CiA 402: statusword bits 6, 5, 3, 2, 1, 0
 STATE_MASK = 0x6F
@@ -149,7 +149,7 @@ class DynoNode:
 
     @property
     def nmt_state(self) -> str:
-        """What its last heartbeat said, in words."""
+        """The state in its last heartbeat, in words."""
         return str(self._node.nmt.state).lower()
 
     def in_state(self, bits: int) -> bool:

@@ -12,9 +12,9 @@ from pydantic import Field
 from drivers.dyno._driver import DynoDriver, DynoNodes
 from drivers.dyno._node import identifiers_of, read_dyno
 from drivers.table import Connections, File, LoadTable, Name
+from hil.core.can.frames import most_frame_bits
 from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError
-from hil.core.frames import most_frame_bits
 
 _REAR = ("rear_left", "rear_right")
 _PDOS = 4  # values and status, left and right

@@ -10,7 +10,7 @@ from drivers.panel._returning_line import ReturningLine
 from drivers.samples import SampleSource
 from hil.core.ak import BUSY, OFFLINE, UNKNOWN, Answer, Request, Telegrams, answer_of
 from hil.core.errors import BenchError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.core.vehicle import VehicleAndRoad
 
 REMOTE, STATE, ALARMS, RESET = "SREM", "ASTZ", "ASTF", "SRES"
@@ -120,11 +120,11 @@ class Panel:
             if value is None:
                 continue
             self._ask(write, f"{value * factor:.6g}")
-            said = self._ask(read)
+            parts = self._ask(read)
             try:
-                stands = float(said[0])
+                stands = float(parts[0])
             except (IndexError, ValueError):
-                raise self._failed(f"{name} reads back as '{printable(' '.join(said), 40)}'") from None
+                raise self._failed(f"{name} reads back as '{printable(' '.join(parts), 40)}'") from None
             if abs(stands - value * factor) > _NEAR * max(abs(value * factor), 1.0):
                 raise self._failed(f"{name} reads back as {stands:g} {unit}, {value * factor:g} was written")
             confirmed[name] = f"{stands:g} {unit}"

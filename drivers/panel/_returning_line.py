@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from drivers.serial_line import SerialLine
-from hil.core.clock import Clock
 from hil.core.errors import BenchError
+from hil.core.runtime.clock import Clock
 
 _AGAIN_S = 0.5
 

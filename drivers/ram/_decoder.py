@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from drivers.ram._packing import Odt
 from drivers.samples import Array, Numbers
-from hil.core.frames import FrameBlock, empty_block, joined
-from hil.core.symbols import Symbol
-from hil.core.xcp import MOST_BYTES, TimeStamps
+from hil.core.can.frames import FrameBlock, empty_block, joined
+from hil.core.can.symbols import Symbol
+from hil.core.can.xcp import MOST_BYTES, TimeStamps
 
 _NUMBER_BYTES = 1
 _STANDS_STILL = 50  # samples

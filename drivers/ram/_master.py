@@ -7,9 +7,9 @@ from typing import Any
 
 from drivers.loop import BusLoop
 from drivers.wire import Wire
+from hil.core.can.xcp import ANSWER, ERROR, EVENT, MOST_BYTES, Code, Command, Happened, in_words
 from hil.core.errors import DeviceError
-from hil.core.printable import printable
-from hil.core.xcp import ANSWER, ERROR, EVENT, MOST_BYTES, Code, Command, Happened, in_words
+from hil.core.errors.wording import printable
 
 _ATTEMPTS = 3
 _BUSY_S, _LONGEST_BUSY_S = 0.05, 2.0
@@ -23,7 +23,7 @@ class Master:
 
     Attributes:
         order: "<" or ">", as the slave counts.
-        events: what the slave told unasked, by its code, and how often.
+        events: what the slave sent unasked, by its code, and how often.
     """
 
     def __init__(self, name: str, loop: BusLoop, wire: Wire, request_id: int, within_s: float) -> None:

@@ -15,10 +15,9 @@ from drivers.ram._packing import packed
 from drivers.ram._setup import Setup
 from drivers.samples import Counting, Samples, Stream
 from drivers.wire import Wire
-from hil.core.errors import BenchError, DeviceError
-from hil.core.frames import SENT_BY_HOST, FrameBlock, standard
-from hil.core.symbols import Symbol, Symbols
-from hil.core.xcp import (
+from hil.core.can.frames import SENT_BY_HOST, FrameBlock, standard
+from hil.core.can.symbols import Symbol, Symbols
+from hil.core.can.xcp import (
     DAQ_RUNNING,
     ERROR,
     LARGEST_ODT_NUMBER,
@@ -28,12 +27,13 @@ from hil.core.xcp import (
     TimeStamps,
     in_words,
 )
+from hil.core.errors import BenchError, DeviceError
 
 _FIRST_SAMPLE_S = 0.5
 _UNANSWERED_S = 1.8  # three beats and a little
 _MOST_LOST = 0.1  # share of samples
 _NEVER_TURNS = 1 << 40  # counts are without turns already
-_EXPECTED = TimeStamps(2, 1e-4, False)  # until the slave has said what it sends
+_EXPECTED = TimeStamps(2, 1e-4, False)  # until the slave has stated what it sends
 
 
 class RamMonitor:
@@ -148,7 +148,7 @@ class RamMonitor:
             self._connect()
             found["software"] = self._setup.software()
             found["station"] = self._master.own_name()
-        except DeviceError:  # who does not say so may measure all the same; silence is told by `come_up`
+        except DeviceError:  # who does not say so may measure all the same; silence is reported by `come_up`
             pass
         return {name: text for name, text in found.items() if text}
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from hil.core.can.frames import most_frame_bits
+from hil.core.can.symbols import Symbol
+from hil.core.can.xcp import LARGEST_ODT_NUMBER
 from hil.core.errors import BenchError
-from hil.core.frames import most_frame_bits
-from hil.core.symbols import Symbol
-from hil.core.xcp import LARGEST_ODT_NUMBER
 
 _NUMBER_BYTES = 1
 

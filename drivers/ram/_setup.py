@@ -1,4 +1,4 @@
-"""Sets a slave's DAQ list up: what it is asked, told, and has to say back before its samples are believed."""
+"""Sets a slave's DAQ list up: what is requested, written and read back before its samples are believed."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ from collections.abc import Sequence
 from drivers.ram._decoder import DaqDecoder
 from drivers.ram._master import Master
 from drivers.ram._packing import Odt, packed
-from hil.core.errors import BenchError
-from hil.core.symbols import Symbol, Symbols
-from hil.core.xcp import (
+from hil.core.can.symbols import Symbol, Symbols
+from hil.core.can.xcp import (
     DYNAMIC,
     IDENTIFICATION_FIELD,
     LARGEST_ODT_NUMBER,
@@ -29,6 +28,7 @@ from hil.core.xcp import (
     period_s,
     time_stamps,
 )
+from hil.core.errors import BenchError
 
 _LIST = 0
 

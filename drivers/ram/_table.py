@@ -9,12 +9,12 @@ from pydantic import Field
 from drivers.ram._monitor import RamMonitor
 from drivers.ram._packing import bits_of, packed
 from drivers.table import Connections, DeviceTable, File
+from hil.core.can.symbol_files import read_symbols
+from hil.core.can.symbols import Symbol, Symbols, refuse_extended
+from hil.core.can.xcp import MOST_BYTES
 from hil.core.channels import unit_of
 from hil.core.errors import BadInputError
-from hil.core.symbol_files import read_symbols
-from hil.core.symbols import Symbol, Symbols, refuse_extended
 from hil.core.units import has_unit
-from hil.core.xcp import MOST_BYTES
 
 _STAMP_BYTES = 2  # of most slaves on CAN
 
@@ -37,7 +37,7 @@ class RamTable(DeviceTable):
         """The file, the symbol of each channel, and the identifiers of commands and answers.
 
         Raises:
-            BadInputError: the file cannot be used or lacks a symbol, or nobody gives identifiers.
+            BadInputError: the file cannot be used or lacks a symbol, or no one gives identifiers.
         """
         file = read_symbols(self.symbols)
         found = {

@@ -6,7 +6,7 @@ from hil.core.controller import LARGEST_ORDER, Controller
 
 
 def parameters_of(controller: Controller) -> dict[str, float]:
-    """Parameter names of the DBC with their values; everything that the RMCU can be told."""
+    """Parameter names of the DBC with their values; everything that can be written to the RMCU."""
     dfc, wsc, dfo = controller.dfc, controller.wsc, controller.dfo
     values = {
         "sample_time": controller.sample_time_s,

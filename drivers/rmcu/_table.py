@@ -9,11 +9,11 @@ from pydantic import Field
 
 from drivers.rmcu._driver import RMCU_SIGNALS, RmcuDriver, read_rmcu
 from drivers.table import Connections, DeviceTable, File
+from hil.core.can.dbc import Names
+from hil.core.can.frames import most_frame_bits
 from hil.core.conventions import TICK_S
-from hil.core.dbc import Names
 from hil.core.errors import BadInputError
-from hil.core.frames import most_frame_bits
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 
 
 class RmcuTable(DeviceTable):

@@ -18,6 +18,7 @@ from hil.agent._deliveries import Deliveries
 from hil.agent._forecasting import Forecasting
 from hil.agent._kept_runs import KeptRun, KeptRuns
 from hil.agent._service import AwayError, TheService
+from hil.api_schemas.agent import AgentOrders, AgentReport, RunEnding, TakenRun
 from hil.client import RefusedError
 from hil.core.errors import BadInputError, BenchError, HilError
 from hil.engine import StopRequest
@@ -25,7 +26,6 @@ from hil.execution.benches import benches_of
 from hil.execution.data_folder import alone_in, name_in
 from hil.execution.run_execution import RunEnd, RunExecution, end_of_left
 from hil.execution.run_process import alive_in
-from hil.messages.agent import AgentOrders, AgentReport, RunEnding, TakenRun
 
 _LOOK_S = 0.1
 _REPORT_S = 0.2  # at least; the service holds a report for up to half a second
@@ -102,7 +102,7 @@ class _Agent:
             await asyncio.sleep(_LOOK_S)
         await self._close()
         self._over = True
-        await reports  # what ended it is told, and none comes after the last
+        await reports  # what ended it is reported, and none comes after the last
         if not self._service.away:
             with contextlib.suppress(AwayError, RefusedError):
                 await self._reported(leaving=True)
@@ -134,7 +134,7 @@ class _Agent:
                 if not self._heard:
                     fix = _TOKEN_FIX if error.status in (401, 403) else _URL_FIX
                     raise BadInputError(error.what, where=self._service.url, fix=fix) from error
-                logger.warning("the service refuses what is told: %s", error.what)
+                logger.warning("the service refuses what is reported: %s", error.what)
                 await asyncio.sleep(_AGAIN_S)
                 continue
             self._refuse(orders)
@@ -202,7 +202,7 @@ class _Agent:
         try:
             run = self._runs.begin(taken)
         except (HilError, OSError) as error:  # it is the same run that is given the next time
-            logger.error("run %d cannot be begun: %s", taken.data.id, error)
+            logger.error("run %d cannot be started: %s", taken.data.id, error)
             return
         bench.kept = run
         try:

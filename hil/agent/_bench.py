@@ -8,12 +8,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 from hil.agent._kept_runs import KeptRun
+from hil.api_schemas.agent import AgentBench, Order
 from hil.core.errors import HilError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.execution.benches import Bench
 from hil.execution.run_execution import RunExecution
-from hil.messages.agent import AgentBench, Order
 
 _LONGEST = 2000
 _USED_S = 1.0
@@ -44,7 +44,7 @@ class DrivenBench:
         return self.bench.name
 
     def report(self) -> AgentBench:
-        """What the service is told of it."""
+        """What the service gets to know of it."""
         bench, running = self.bench, self.running
         facts = AgentBench(
             name=bench.name,
@@ -58,7 +58,7 @@ class DrivenBench:
         stopped = bench.stopped()
         if running is not None:
             facts.share = None if running.share is None else min(max(running.share, 0.0), 1.0)
-            facts.doing, facts.told = _short(running.doing), _short(running.told)
+            facts.doing, facts.message = _short(running.doing), _short(running.message)
         elif self.left:
             facts.doing = "the run is being ended, because its agent was killed"
         elif self.kept is not None:

@@ -10,10 +10,10 @@ from pathlib import Path
 
 from hil.agent._kept_runs import KeptRun
 from hil.agent._service import AwayError, TheService
+from hil.api_schemas.agent import MOST_PIECE_BYTES, RunEnding
 from hil.client import RefusedError
 from hil.engine import RECORDING
 from hil.execution.daemon_thread import apart
-from hil.messages.agent import MOST_PIECE_BYTES, RunEnding
 
 _LOOK_S = 0.2  # how often a recording that grows is looked at
 _AGAIN_S = 1.0

@@ -7,13 +7,13 @@ import tempfile
 from pathlib import Path
 
 from hil.agent._service import AwayError, TheService
+from hil.api_schemas.agent import AgentsForecast, Order, PlanSent
+from hil.api_schemas.api import ForecastData, Problem
 from hil.client import RefusedError
 from hil.core.errors import BadInputError, BenchError, HilError
 from hil.core.files import write_atomically
 from hil.execution.benches import Bench
 from hil.execution.forecasts import Forecasts
-from hil.messages.agent import AgentsForecast, Order, PlanSent
-from hil.messages.api import ForecastData, Problem
 from test_plans import plan_from_text
 
 
@@ -36,8 +36,8 @@ class Forecasting:
             return AgentsForecast(forecast=await self._forecast(plan, bench))
         except (HilError, OSError) as error:
             refused = isinstance(error, BadInputError)
-            told = error if isinstance(error, HilError) else BenchError(str(error), where="forecast")
-            problem = Problem(what=told.what, where=told.where, fix=told.fix)
+            shown = error if isinstance(error, HilError) else BenchError(str(error), where="forecast")
+            problem = Problem(what=shown.what, where=shown.where, fix=shown.fix)
             return AgentsForecast(problem=problem, refused=refused)
 
     async def _forecast(self, sent: PlanSent, bench: Bench) -> ForecastData:

@@ -1,4 +1,4 @@
-"""Runs on the agent's disk: written down before they are begun, kept until the service has them."""
+"""Runs on the agent's disk: written down before they are started, kept until the service has them."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from hil.api_schemas.agent import FileMade, RunEnding, TakenRun
 from hil.core.files import make_directory, sha256_of, write_atomically
-from hil.execution.run_files import files_in, folder_of
-from hil.messages.agent import FileMade, RunEnding, TakenRun
+from hil.execution.files import files_in, folder_of
 
 _TAKEN, _ENDING, _INPUTS = ".taken.json", ".ending.json", ".inputs"
 _DELIVERED, _REFUSED = ".delivered", ".refused"
@@ -50,7 +50,7 @@ class KeptRun:
         return made
 
     def ending_with(self, files: list[FileMade]) -> RunEnding:
-        """How it ended, as it is told now."""
+        """How it ended, as it is reported now."""
         assert self.ending is not None
         made = files if self.ending.state != "queued" else []
         ago_s = max(0.0, time.time() - (self.folder / _ENDING).stat().st_mtime)
@@ -93,7 +93,7 @@ class KeptRuns:
                 yield KeptRun(folder, taken, ending)
 
     def begin(self, taken: TakenRun) -> KeptRun:
-        """Keep that a run was taken, before anything of it is begun, and what its plan loads.
+        """Keep that a run was taken, before anything of it is started, and what its plan loads.
 
         Raises:
             HilError: it cannot be written.
@@ -101,7 +101,7 @@ class KeptRuns:
         folder = folder_of(self._folder, taken.data.id)
         if (folder / _TAKEN).exists():  # of another service, or one whose database was put back
             folder.rename(f"{folder}.before-{time.time_ns()}")
-        elif folder.exists():  # nothing of it was begun
+        elif folder.exists():  # nothing of it was started
             shutil.rmtree(folder)
         inputs = folder / _INPUTS
         make_directory(inputs)

@@ -16,8 +16,8 @@ from hil.app.requests import CampaignRequest
 from hil.app.result_file import Outcome, json_file
 from hil.app.results_folder import ResultsFolder, results_in
 from hil.campaign import (
-    BEGUN,
     FOLDER,
+    STARTED,
     Carriers,
     Here,
     Parts,
@@ -29,7 +29,7 @@ from hil.campaign import (
     load_setting,
     write_begun,
 )
-from hil.campaign import carry_out as simulate
+from hil.campaign import execute as simulate
 from hil.engine import StopRequest
 from reports import HTML, PDF
 from reports.campaign_report import campaign_page
@@ -74,7 +74,7 @@ def run_campaign(
     simulations = Simulations(setting)
     with results_in(
         request.out,
-        (BEGUN, SUMMARY, HTML, PDF),
+        (STARTED, SUMMARY, HTML, PDF),
         inputs=[one.path for one in setting.sources],
         overwrite=request.overwrite or request.resume,
         default="campaign",
@@ -91,7 +91,7 @@ def run_campaign(
 
 
 def forecast_campaign(request: CampaignRequest, feedback: Feedback = LOGGED) -> dict[str, Any]:
-    """How many simulations a campaign has, and how long they take here: two of them are carried out.
+    """How many simulations a campaign has, and how long they take here: two of them are executed.
 
     Raises:
         BadInputError: the campaign has mistakes.
@@ -104,7 +104,7 @@ def forecast_campaign(request: CampaignRequest, feedback: Feedback = LOGGED) -> 
 def _simulate_missing(
     simulations: Simulations, place: ResultsFolder, request: CampaignRequest, feedback: Feedback
 ) -> int:
-    """Carry out what is missing; how many are there then: fewer than asked for if somebody stopped it."""
+    """Execute what is missing; how many are there then: fewer than asked for if somebody stopped it."""
     setting, stop = simulations.setting, StopRequest()
     progress = feedback.progress(f"campaign {setting.file.name}")
     with progress as show, stop.by_signals(), stop.telling(end_at_second(stop)):
@@ -174,7 +174,7 @@ def _write(setting: Setting, found: Findings, place: ResultsFolder) -> dict[str,
         "seed": file.seed,
         "table": FOLDER,
     }
-    listed = sorted([BEGUN, SUMMARY, HTML, PDF])
+    listed = sorted([STARTED, SUMMARY, HTML, PDF])
     summary = summary_of(found, asked, random=random, wanted=file.pass_share, files=listed)
     used: dict[str, list[Path]] = {}
     for one in setting.sources:
@@ -188,7 +188,7 @@ def _write(setting: Setting, found: Findings, place: ResultsFolder) -> dict[str,
         wanted=file.pass_share,
     )
     files = documents(page)
-    files[BEGUN] = (place.folder / BEGUN).read_bytes()
+    files[STARTED] = (place.folder / STARTED).read_bytes()
     files[SUMMARY] = json_file(summary)
     place.write(files, [one.path for one in setting.sources])
     return summary

@@ -13,8 +13,8 @@ from hil.app.feedback import LOGGED, Feedback
 from hil.app.requests import CheckRequest
 from hil.core.controller import load_controller
 from hil.core.errors import BadInputError
-from hil.core.extras import not_installed
-from hil.core.mistakes import all_of
+from hil.core.errors.extras import not_installed
+from hil.core.errors.mistakes import all_of
 from hil.core.model import load_model
 from hil.engine import DEFAULT_BENCH, BenchFile, load_bench
 from hil.engine.bench.calibration_dates import accepted_expiry

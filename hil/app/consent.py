@@ -1,10 +1,10 @@
-"""One consent before a series of runs that nobody watches one by one."""
+"""One consent before a series of runs that no one watches one by one."""
 
 from __future__ import annotations
 
 from hil.app.feedback import Feedback
 from hil.core.errors import BadInputError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.engine import BenchFile
 from hil.engine.prediction.envelope import Envelope
 from hil.engine.run.preflight import Rehearsal
@@ -14,10 +14,10 @@ _ENTER = "Enter your name to authorise these runs:"
 
 
 def refuse_nobody(plan: Plan, bench: BenchFile, confirm: str, feedback: Feedback) -> None:
-    """Refuse before anything is computed if nobody is there to consent.
+    """Refuse before anything is computed if no one is there to consent.
 
     Raises:
-        BadInputError: no name, and nobody to ask.
+        BadInputError: no name, and no one to ask.
     """
     if _needed(plan, bench) and not confirm.strip() and not feedback.can_ask:
         raise BadInputError(
@@ -30,10 +30,10 @@ def refuse_nobody(plan: Plan, bench: BenchFile, confirm: str, feedback: Feedback
 def consent(
     plans: tuple[Plan, ...], bench: BenchFile, envelope: Envelope, confirm: str, feedback: Feedback
 ) -> str:
-    """Who takes the runs within the envelope upon them, prompts of the plans included; '' if nobody has to.
+    """Who takes the runs within the envelope upon them, prompts of the plans included; '' if no one has to.
 
     Raises:
-        BadInputError: nobody does.
+        BadInputError: no one does.
     """
     if not any(_needed(plan, bench) for plan in plans):
         return ""
@@ -65,6 +65,6 @@ def _question(plans: tuple[Plan, ...], bench: BenchFile, envelope: Envelope) -> 
             lines.append(f"The plan {plan.name} is hazardous{why}")
         rehearsal = Rehearsal(bench)
         for step in (*plan.steps, *plan.finally_):
-            step.carry_out(rehearsal)
+            step.execute(rehearsal)
         lines += [f"Confirmed in advance for each run of {plan.name}: {text}" for text in rehearsal.prompts]
     return "\n".join(lines)

@@ -20,7 +20,7 @@ from hil.app.requests import ExplainRequest
 from hil.app.result_file import Outcome, json_file
 from hil.app.results_folder import results_in
 from hil.core.errors import BadInputError
-from hil.core.file_format import FORMAT
+from hil.core.files.kinds import FORMAT
 from hil.core.model import Model, load_model
 from hil.engine import BenchFile, StopRequest, load_bench
 from hil.engine.prediction.prediction import predict
@@ -79,11 +79,11 @@ def _predicted_on(file: BenchFile) -> CarryOut:
     assert file.simulation is not None
     simulation = file.simulation
 
-    def carry_out(plan: Plan, model: Model, held: Mapping[str, float]) -> Predicted:
+    def execute(plan: Plan, model: Model, held: Mapping[str, float]) -> Predicted:
         kept = simulation.model_copy(update={"rmcu": {**simulation.rmcu, **held}})
         return predict(plan, file.model_copy(update={"simulation": kept}), model)
 
-    return carry_out
+    return execute
 
 
 def _summary(found: Explanation, seed: int, files: list[str]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ import traceback
 from pathlib import Path
 
 from hil.core.errors import BenchError, HilError
-from hil.core.extras import not_installed
+from hil.core.errors.extras import not_installed
 from hil.core.files import of_the_system
 
 logger = logging.getLogger(__name__)

@@ -51,11 +51,11 @@ class Feedback(Protocol):
         """Show a question that a name answers; the name that is given, else the one that is typed, or ''."""
 
     def terminal(self) -> Terminal | None:
-        """The operator's terminal for the length of a run; None where nobody sits at one."""
+        """The operator's terminal for the length of a run; None where no one sits at one."""
 
 
 class LoggedFeedback:
-    """Feedback for callers that show nothing: everything goes to the log, and nobody answers."""
+    """Feedback for callers that show nothing: everything goes to the log, and no one answers."""
 
     keys = ""
     can_ask = False
@@ -92,7 +92,7 @@ class LoggedFeedback:
         return given
 
     def terminal(self) -> Terminal | None:
-        """Nobody's."""
+        """No one's."""
         return None
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from hil.engine import StopRequest
 
 EXIT_CODE = 130
-_AT_ONCE_S = 0.002  # nobody presses a key twice so fast
+_AT_ONCE_S = 0.002  # no one presses a key twice so fast
 
 
 class Interrupts:
@@ -65,7 +65,7 @@ class Interrupts:
             return
         if not self.arrived:
             self.arrived = True
-            # What was made in part complains as it is thrown away: nobody's news.
+            # What was made in part complains as it is thrown away: no one's news.
             self._unraisable, sys.unraisablehook = sys.unraisablehook, _say_nothing
         raise KeyboardInterrupt
 

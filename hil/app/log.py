@@ -1,6 +1,6 @@
 """The log of a command: nothing unless it is asked for, or unless something unexpected happens.
 
-Modules log to loggers of their own names; this is the one place where it is said what becomes of that.
+Modules log to loggers of their own names; this is the one place where it is stated what becomes of that.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from collections import deque
 from collections.abc import Sequence
 from pathlib import Path
 
+from hil.core.conventions import PACKAGES
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import printable
 from hil.core.files import of_the_system, refuse_special
-from hil.core.printable import printable
 
-_PACKAGES = ("hil", "drivers", "sim_backend", "test_plans", "reports")
 _HEAD = "# log of hil"
 _LINES_KEPT = 2000
 _LONGEST_LINE = 2000
@@ -31,7 +31,7 @@ logger = logging.getLogger(__name__)
 class Log:
     """What a command did, to a file and to standard error as asked; the last lines are kept in any case.
 
-    What is logged as an error with its traceback is a mistake of the program: nobody expected it.
+    What is logged as an error with its traceback is a mistake of the program: no one expected it.
     """
 
     def __init__(self) -> None:
@@ -51,7 +51,7 @@ class Log:
         logging.raiseExceptions = False  # a log that cannot be written must not cost a run its output
         self._recent = _Recent()
         self._file, self.verbose = None, False
-        for name in _PACKAGES:
+        for name in PACKAGES:
             logging.getLogger(name).setLevel(logging.DEBUG)
         self._add(self._recent, logging.DEBUG)
         logging.captureWarnings(capture=True)  # what libraries warn of is for the log

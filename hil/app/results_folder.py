@@ -13,7 +13,7 @@ from pathlib import Path
 
 from hil.core.errors import BadInputError
 from hil.core.files import make_directory, read_text, refuse_special, replacing
-from hil.core.locks import HeldError, lock_on
+from hil.core.files.locks import HeldError, lock_on
 
 logger = logging.getLogger(__name__)
 
@@ -88,7 +88,7 @@ def results_in(
 
 @contextlib.contextmanager
 def _claimed(out: Path | None, default: str) -> Iterator[tuple[Path, int]]:
-    """The folder and its lock; what this process made and nobody used goes again while the lock is held."""
+    """The folder and its lock; what this process made and no one used goes again while the lock is held."""
     with contextlib.ExitStack() as held:
         for _ in range(_MOST_CLAIMS):
             made: list[Path] = []

@@ -19,7 +19,7 @@ from hil.core.model import Model
 from hil.core.recording import Recording, read_recording
 from hil.core.result import RunResult
 from hil.engine import RECORDING, BenchFile, RunOutcome, RunRequest, StopRequest
-from hil.engine import carry_out as carry_out_run
+from hil.engine import execute as carry_out_run
 from hil.engine.ipc.ipc import analysed_apart
 from hil.engine.run.disk_room import remark_on_room
 from reports import HTML, JUNIT, PDF, write_documents, write_junit
@@ -68,7 +68,7 @@ class RunSettings:
     stops: Path | None = None
 
     @contextlib.contextmanager
-    def carry_out(self, plan: Plan, bench: BenchFile, out: Path | None) -> Iterator[FinishedRun]:
+    def execute(self, plan: Plan, bench: BenchFile, out: Path | None) -> Iterator[FinishedRun]:
         """Carry it out and write its reports; the folder is this command's until the block ends."""
         stop = StopRequest()
         request = RunRequest(
@@ -96,12 +96,12 @@ class RunSettings:
             ) as place,
             stop.by_signals(),  # from here to the result a signal only asks: nothing measured is lost
         ):
-            run = self._carry_out(request, place, stop)
+            run = self._execute(request, place, stop)
             if run.outcome.error is not None:
                 self.feedback.complain(str(run.outcome.error))
             yield run
 
-    def _carry_out(self, request: RunRequest, place: ResultsFolder, stop: StopRequest) -> FinishedRun:
+    def _execute(self, request: RunRequest, place: ResultsFolder, stop: StopRequest) -> FinishedRun:
         plan, bench = request.plan, request.bench
         request.out, request.replaces = place.folder, place.stale
         remark = remark_on_room(plan, place.folder)
@@ -129,7 +129,7 @@ class _Conclusion:
         show("writing the result")
         path = self._outcome.recording
         recording = self._try(lambda: read_recording(path, least_samples=0, allow_missing=True))
-        recording = recording or Recording({}, path)  # the verdicts are told all the same
+        recording = recording or Recording({}, path)  # the verdicts are reported all the same
         self._add(lambda: {"junit": write_junit(recording, self._outcome.result, self._path(JUNIT))})
         result = self._store(recording)
         if not self._asked_again():

@@ -10,15 +10,15 @@ from typing import Any
 import yaml
 
 from hil.core.errors import BadInputError
+from hil.core.files.toml_file import parse_toml
 from hil.core.recording import Recording
 from hil.core.result import RunResult
-from hil.core.toml_file import parse_toml
 
 PLAN, BENCH, MODEL = "plan.yaml", "bench.toml", "model.toml"
 
 
 def inputs_of(recording: Recording) -> dict[str, bytes]:
-    """Files of one folder in which the run can be carried out again, by name.
+    """Files of one folder in which the run can be executed again, by name.
 
     Plan and bench name each other file by its path at that time; here all lie beside them, so the paths go.
 
@@ -49,8 +49,8 @@ def inputs_of(recording: Recording) -> dict[str, bytes]:
 def command_again(recording: Recording, folder: Path) -> str:
     """The command that carries the run out again, with the values that its variables had."""
     words = ["hil", "run", str(folder / PLAN), "--bench", str(folder / BENCH)]
-    told = recording.attachments.get("run.json")
-    values = RunResult.model_validate_json(told).variables if told else ()
+    attached = recording.attachments.get("run.json")
+    values = RunResult.model_validate_json(attached).variables if attached else ()
     for one in values:
         words += ["--set", f"{one.name}={one.value!r}"]
     return shlex.join(words)

@@ -46,7 +46,7 @@ def announce_series(plans: Sequence[Plan], repeat: int, out: Path | None, feedba
     if runs > LARGEST_SERIES:
         raise BadInputError(
             f"{len(plans)} combinations, {repeat} times each, are {runs} runs: at most {LARGEST_SERIES} are "
-            "carried out",
+            "executed",
             where="--repeat",
             fix="repeat fewer times, or simulate them with `hil campaign`",
         )
@@ -74,7 +74,7 @@ def run_series(
 ) -> SeriesOutcome:
     """Carry every plan out on every bench, each in a numbered folder.
 
-    A run that did not come to its end ends the series; what was carried out so far is kept and summed up.
+    A run that did not come to its end ends the series; what was executed so far is kept and summed up.
 
     Args:
         report_run: called after each run.
@@ -89,7 +89,7 @@ def run_series(
         default=f"{plans[0].name}-series",
     ) as place:
         for number, (group, plan, bench) in enumerate(_each(plans, benches), 1):
-            with settings.carry_out(plan, bench, place.folder / f"{number:03d}") as run:
+            with settings.execute(plan, bench, place.folder / f"{number:03d}") as run:
                 done.append((group, run))
                 write_atomically(place.folder / SUMMARY, to_json(_summary(done)) + "\n")
                 report_run(run)

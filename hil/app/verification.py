@@ -9,9 +9,15 @@ from pathlib import Path
 from hil.app.result_file import RESULT, text_of
 from hil.core.errors import BadInputError
 from hil.core.files import read_bytes, sha256_of
+from hil.core.files.signatures import (
+    BrokenSignatureError,
+    fingerprint,
+    hashes_of,
+    read_signature,
+    signatures_in,
+)
 from hil.core.recording import RUN, Recording, read_recording, run_of
 from hil.core.result import RunResult
-from hil.core.signatures import BrokenSignatureError, fingerprint, hashes_of, read_signature, signatures_in
 from hil.engine import RECORDING
 from reports import HTML, PDF, claim_of
 from reports.provenance import stored_files
@@ -86,11 +92,11 @@ def _of_result(file: Path, text: str, result: RunResult, path: Path) -> Finding:
     return Finding(True, file, "agrees with the recording")
 
 
-def _of_a_lost_run(file: Path, result: RunResult, told: Iterable[RunResult]) -> Finding:
+def _of_a_lost_run(file: Path, result: RunResult, recorded: Iterable[RunResult]) -> Finding:
     """Of a run whose process was lost: the rest must be what the recording gives, as far as it goes."""
-    said = {name: getattr(result, name) for name in _ONLY_THERE}
+    only_there = {name: getattr(result, name) for name in _ONLY_THERE}
     if result.verdict != "error" or result.of_the_run not in [
-        run.of_the_run.model_copy(update=said) for run in told
+        run.of_the_run.model_copy(update=only_there) for run in recorded
     ]:
         return Finding(
             False, file, "was changed: it contradicts what was recorded before the run was cut off"

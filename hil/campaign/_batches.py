@@ -64,7 +64,7 @@ class Carriers(Protocol):
         """Hand a batch out."""
 
     def keep_running_only(self) -> None:
-        """Take back what nobody has begun."""
+        """Take back what no one has started."""
 
     def done(self) -> Iterator[Done]:
         """What has ended since."""
@@ -90,7 +90,7 @@ class Here:
         self.wanted = 0
 
     def keep_running_only(self) -> None:
-        """None is begun between two of them."""
+        """None is started between two of them."""
         self._out.clear()
 
     def done(self) -> Iterator[Done]:

@@ -16,10 +16,10 @@ from hil.analysis.campaigns import column_units
 from hil.campaign._batches import Batch, Row
 from hil.campaign._setting import Setting
 from hil.core.errors import BadInputError
-from hil.core.file_format import FORMAT
 from hil.core.files import read_text, replacing, write_atomically
+from hil.core.files.kinds import FORMAT
 
-BEGUN, FOLDER = "begun.json", "simulations"
+STARTED, FOLDER = "started.json", "simulations"
 _NOT_THIS = "name another place with --out, or begin it anew with --overwrite"
 
 
@@ -82,7 +82,7 @@ class Parts:
 
 
 def write_begun(folder: Path, setting: Setting, batch: int) -> None:
-    """Write down what is begun here, before anything is done."""
+    """Write down what is started here, before anything is done."""
     content = {
         "format": FORMAT,
         "campaign": setting.file.name,
@@ -90,16 +90,16 @@ def write_begun(folder: Path, setting: Setting, batch: int) -> None:
         "batch": batch,
         "identity": setting.identity,
     }
-    write_atomically(folder / BEGUN, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+    write_atomically(folder / STARTED, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
 
 
 def begun_batch(folder: Path, setting: Setting) -> int:
-    """Simulations in a part file of what was begun here; 0 if nothing was.
+    """Simulations in a part file of what was started here; 0 if nothing was.
 
     Raises:
-        BadInputError: another campaign was begun here, or one of its files has changed since.
+        BadInputError: another campaign was started here, or one of its files has changed since.
     """
-    path = folder / BEGUN
+    path = folder / STARTED
     if not path.exists():
         return 0
     try:

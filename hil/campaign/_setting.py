@@ -1,4 +1,4 @@
-"""A campaign with everything that it names: read, checked, and told apart from any other by a digest."""
+"""A campaign with everything that it names: read, checked, and distinguished from any other by a digest."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from hil.analysis.campaigns import (
 from hil.analysis.tuning import differing, driven_by, refuse_model
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import did_you_mean
 from hil.core.files import is_file, sha256_of
+from hil.core.files.shipped import shipped_file
 from hil.core.model import Model, load_model
-from hil.core.shipped import shipped_file
-from hil.core.suggestion import did_you_mean
 from hil.engine import BenchFile, load_bench
 from hil.engine.prediction.batch_prediction import controller_files
 from test_plans import Criterion, Plan, load_plan

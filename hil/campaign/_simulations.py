@@ -16,7 +16,7 @@ from hil.campaign._setting import Setting
 from hil.core.channels import CHANNELS
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import HilError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.core.result import CriterionResult, verdict_of
 from hil.engine.prediction.batch_prediction import BatchPrediction
 from test_plans import Choices, Plan, judge, plan_from_text
@@ -65,7 +65,7 @@ class Simulations:
         return {**row, "processor_s": time.process_time() - begun_s}
 
     def failed(self, number: int, words: str) -> Row:
-        """The row of a simulation that could not be carried out."""
+        """The row of a simulation that could not be executed."""
         asked = self._asked(self.setting.cases[number])
         return {**asked, "verdict": "error", "error": printable(words, _LONGEST_ERROR)}
 

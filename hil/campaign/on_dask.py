@@ -20,7 +20,7 @@ from hil.campaign._batches import Batch, Done, MakeRows, Row
 from hil.campaign._setting import Setting, load_setting
 from hil.campaign._simulations import Simulations
 from hil.core.errors import BadInputError, BenchError, HilError
-from hil.core.extras import not_installed
+from hil.core.errors.extras import not_installed
 from hil.engine.stop.stopping import held_back
 
 try:
@@ -35,7 +35,7 @@ _LOOK_S = 2.0
 _COUNT_S = 0.5
 _AHEAD = 3  # batches for each worker that are handed out: none waits for the next
 _LOGGERS = ("distributed", "distributed.client", "tornado", "tornado.application")
-#: Memory that a simulation gives back, the next one asks for again: it stays with the process. And nobody
+#: Memory that a simulation gives back, the next one asks for again: it stays with the process. And no one
 #: looks at a profile of the workers.
 _SETTINGS = {
     "distributed.nanny.pre-spawn-environ": {"OPENBLAS_NUM_THREADS": 1},
@@ -55,7 +55,7 @@ class Workers:
         scheduler: address of one whose workers are used in place of those.
 
     Raises:
-        BenchError: nobody answers there.
+        BenchError: no one answers there.
     """
 
     def __init__(self, make: MakeRows, processes: int, scheduler: str = "") -> None:
@@ -70,10 +70,10 @@ class Workers:
         self._out: dict[str, tuple[Any, Batch]] = {}
         self._suspects: deque[Batch] = deque()
         self._deadly: set[Batch] = set()
-        self._alone = ""  # key of a suspect that is carried out with nothing beside it
+        self._alone = ""  # key of a suspect that is executed with nothing beside it
 
     def __enter__(self) -> Workers:
-        for name in _LOGGERS:  # what they say is told in our words
+        for name in _LOGGERS:  # what they say is reported in our words
             logging.getLogger(name).setLevel(logging.CRITICAL)
         try:
             self._client = self._held.enter_context(self._remote() if self._scheduler else self._local())
@@ -89,7 +89,7 @@ class Workers:
         self._held.close()
 
     def _local(self) -> Any:
-        """Processes of this machine: nobody else reaches them, and Ctrl-C is for this process to answer."""
+        """Processes of this machine: no one else reaches them, and Ctrl-C is for this process to answer."""
         multiprocessing.resource_tracker.ensure_running()
         dask.config.set(_SETTINGS)
         with held_back():
@@ -160,7 +160,7 @@ class Workers:
         return str(future.key)
 
     def keep_running_only(self) -> None:
-        """Take back what no worker has begun: they take the oldest first."""
+        """Take back what no worker has started: they take the oldest first."""
         self._suspects.clear()
         for key in list(self._out)[self.count :]:
             self._out.pop(key)[0].cancel()
@@ -186,7 +186,7 @@ class Workers:
     def _taken(self, future: Any, batch: Batch) -> Iterator[Done]:
         """Rows of a batch; one that was there when workers died is a suspect.
 
-        So is whatever waited beside it: suspects are carried out at the end, alone, and those that kill their
+        So is whatever waited beside it: suspects are executed at the end, alone, and those that kill their
         workers again are halved until it is known which simulation does.
         """
         if future.status == "finished":

@@ -24,7 +24,7 @@ def main() -> None:
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         os.environ.setdefault(
             "PYTHONWARNINGS", "ignore"
-        )  # of processes begun by this one; here the log has them
+        )  # of processes started by this one; here the log has them
         from hil.cli._app import run_command_line
 
         code = run_command_line()

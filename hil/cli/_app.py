@@ -7,7 +7,7 @@ import importlib.metadata
 import inspect
 import logging
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Annotated, Any, get_type_hints
 
@@ -19,24 +19,22 @@ from hil.app.log import LOG
 from hil.cli._commands import (
     GROUPS,
     RENAMED,
-    Command,
     command_names,
-    command_of,
+    execute,
     group_help,
     help_text,
-    module_of,
+    options_of,
     taken_apart,
 )
-from hil.cli._completion import completion_wanted, take_named_shell
-from hil.cli._multi_value_options import each_with_its_option
-from hil.cli._streams import complain, tolerate_outputs
+from hil.cli.completion import completion_wanted, take_named_shell
+from hil.cli.streams import complain, tolerate_outputs
 from hil.core.errors import BadInputError, BenchError, HilError
 
 logger = logging.getLogger(__name__)
 
 
 def run_command_line() -> int:
-    """Carry out this process's command line; its exit code.
+    """Execute this process's command line; its exit code.
 
     Errors become one message on standard error. A standard output that could not be written is a failure
     of its own; one whose reader has gone is not.
@@ -71,7 +69,7 @@ def _dispatch(arguments: list[str]) -> int:
         return 0
     if arguments[0] in RENAMED:
         complain("note", f"'hil {arguments[0]}' is now 'hil {name}'; the old name goes with the next release")
-    several = getattr(module_of(name), "SEVERAL", ())
+    several = getattr(options_of(name), "SEVERAL", ())
     app_of(name)(list(each_with_its_option(rest, several)), prog_name=f"hil {name}")
     return 0
 
@@ -107,12 +105,12 @@ def app_of(*names: str) -> typer.Typer:
             groups[group] = _typer() if group else app
             if group:
                 app.add_typer(groups[group], name=group)
-        command = command_of(name)
+        options = options_of(name)
         settings = {"help_option_names": ["-h", "--help"]}
         add = (groups[group] if several else app).command(
-            last, help=command.__doc__, context_settings=settings
+            last, help=options.__doc__, context_settings=settings
         )
-        add(_with_exit_code(command))
+        add(_with_exit_code(name, options))
     return app
 
 
@@ -131,12 +129,12 @@ _VERBOSE = Annotated[bool, typer.Option("--verbose", help="print each action on 
 _LOG = Annotated[Path | None, typer.Option("--log", metavar="FILE", help="write a detailed log to FILE")]
 
 
-def _with_exit_code(command: type[Command]) -> Callable[..., None]:
+def _with_exit_code(name: str, command: type[Any]) -> Callable[..., None]:
     """The command as a function, with the options that all have."""
 
     def call(*, verbose: bool, log: Path | None, **options: Any) -> None:
         LOG.send(log, verbose=verbose)
-        raise SystemExit(command(**options).carry_out())
+        raise SystemExit(execute(name, command(**options)))
 
     common = {"verbose": (False, _VERBOSE), "log": (None, _LOG)}
     kinds = {
@@ -157,10 +155,10 @@ def _with_exit_code(command: type[Command]) -> Callable[..., None]:
 
 
 def guarded(arguments: list[str]) -> int:
-    """The exit code of a command line; every error is told in one message, none as a traceback."""
+    """The exit code of a command line; every error is reported in one message, none as a traceback."""
     LOG.begin(arguments)
     try:
-        code = _carry_out(arguments)
+        code = _execute(arguments)
         logger.info("exit code %d", code)
         if LOG.faulty:
             complain("note", f"details are in {LOG.kept() or 'no log: it cannot be written'}")
@@ -169,7 +167,7 @@ def guarded(arguments: list[str]) -> int:
         LOG.end()
 
 
-def _carry_out(arguments: list[str]) -> int:
+def _execute(arguments: list[str]) -> int:
     try:
         return _dispatch(arguments)
     except SystemExit as stop:
@@ -192,3 +190,23 @@ def _interrupted() -> int:
 def _complained(error: HilError) -> int:
     complain("error", str(error))
     return error.exit_code
+
+
+def each_with_its_option(arguments: Iterable[str], several: Iterable[str]) -> Iterator[str]:
+    """The arguments with an option of `several` before each of its values, which end at the next option."""
+    names = tuple(several)
+    option, first, plain = "", False, False
+    for argument in arguments:
+        if plain or argument == "--":
+            plain, option = True, ""
+        elif argument in names:
+            option, first = argument, True
+            yield option
+            continue
+        elif argument.startswith("-") and argument != "-":
+            option = ""
+        elif option and first:
+            first = False
+        elif option:
+            yield option
+        yield argument

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import difflib
 import importlib
-from types import ModuleType
-from typing import Any, Protocol
+from typing import Any
 
+from hil.app.worker.lean_imports import import_python_can
+from hil.cli.options import benches, controllers, files, models, runs
 from hil.core.errors import BadInputError
 
-#: Name and line of each command, by the topic under which `hil --help` has it. The module
-#: hil.cli.commands.NAME (_ for - and for a blank) is imported when it is used.
+#: Name and line of each command, by the topic under which `hil --help` has it. Its options
+#: are the class NAME in a module of hil.cli.options, its work is hil.cli.commands.NAME (_ for a blank).
 TOPICS: dict[str, dict[str, str]] = {
     "Runs": {
         "run": "Run a test plan on a bench and write its report.",
@@ -43,6 +44,7 @@ TOPICS: dict[str, dict[str, str]] = {
         "schema": "Print the JSON schema of plan, bench, model, controller or campaign files.",
     },
 }
+_OPTIONS = (runs, models, controllers, benches, files)
 #: Commands of a group.
 GROUPS: dict[str, dict[str, str]] = {
     "bench": {
@@ -74,31 +76,28 @@ RENAMED = {
 }
 
 
-class Command(Protocol):
-    """Options of a command, and what it does with them. Documented by its class, as `--help` shows it."""
-
-    def __init__(self, **options: Any) -> None: ...
-
-    def carry_out(self) -> int:
-        """Carry the command out; its exit code."""
-        ...
-
-
 def command_names() -> list[str]:
     """All commands, those of a group with its name: "bench doctor"."""
     top = [name for commands in TOPICS.values() for name in commands if name not in GROUPS]
     return [*top, *(f"{group} {name}" for group, commands in GROUPS.items() for name in commands)]
 
 
-def module_of(name: str) -> ModuleType:
-    """The module of a command."""
-    return importlib.import_module(f"hil.cli.commands.{name.replace('-', '_').replace(' ', '_')}")
-
-
-def command_of(name: str) -> type[Command]:
-    """The class of a command, named as it is: BenchDoctor of `bench doctor`. Its fields are the options."""
-    found: type[Command] = getattr(module_of(name), name.title().replace("-", "").replace(" ", ""))
+def options_of(name: str) -> type[Any]:
+    """The class of a command's options, named as it is (BenchDoctor); `--help` shows its docstring."""
+    wanted = name.title().replace("-", "").replace(" ", "")
+    found: type[Any] = next(vars(topic)[wanted] for topic in _OPTIONS if wanted in vars(topic))
     return found
+
+
+def execute(name: str, chosen: object) -> int:
+    """Execute a command; its exit code."""
+    import_python_can()
+    code: int = importlib.import_module(f"hil.cli.commands.{_module_name(name)}").execute(chosen)
+    return code
+
+
+def _module_name(name: str) -> str:
+    return name.replace("-", "_").replace(" ", "_")
 
 
 def taken_apart(arguments: list[str]) -> tuple[str, list[str]]:

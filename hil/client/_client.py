@@ -7,9 +7,7 @@ import urllib.parse
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from hil.client._requests import WITHIN_S, Requests, first_of, part
-from hil.core.errors import BenchError
-from hil.messages.agent import (
+from hil.api_schemas.agent import (
     AgentData,
     AgentOrders,
     AgentReport,
@@ -19,7 +17,7 @@ from hil.messages.agent import (
     RunEnding,
     Taken,
 )
-from hil.messages.api import (
+from hil.api_schemas.api import (
     OVER,
     Answer,
     AuditEntry,
@@ -40,9 +38,9 @@ from hil.messages.api import (
     TokenWanted,
     TrendData,
 )
-from hil.messages.campaign import CampaignData, CampaignExample, CampaignWanted
-from hil.messages.comparison import ComparisonData, TracesData
-from hil.messages.design import (
+from hil.api_schemas.campaign import CampaignData, CampaignExample, CampaignWanted
+from hil.api_schemas.comparison import ComparisonData, TracesData
+from hil.api_schemas.design import (
     ControllerData,
     DesignData,
     DraftData,
@@ -50,14 +48,16 @@ from hil.messages.design import (
     ModelData,
     PlanCopyWanted,
 )
-from hil.messages.study import (
+from hil.api_schemas.study import (
     DiagnosisData,
     DiagnosisWanted,
     IdentificationData,
     IdentificationWanted,
     StudyData,
 )
-from hil.messages.upload import KeptApart
+from hil.api_schemas.upload import KeptApart
+from hil.client._requests import WITHIN_S, Requests, first_of, part
+from hil.core.errors import BenchError
 
 _FORECAST_WITHIN_S = 300.0
 _REPORTED_WITHIN_S = 5.0
@@ -72,7 +72,7 @@ class Client(Requests):
 
     Args:
         url: where it is, as `hil serve` says: `http://127.0.0.1:8080`.
-        token: who asks; a service without tokens asks nobody.
+        token: who asks; a service without tokens asks no one.
     """
 
     _stop_url = ""
@@ -284,7 +284,7 @@ class Client(Requests):
         return self._several(CampaignExample, "/campaign-examples")
 
     def add_campaign(self, wanted: CampaignWanted) -> CampaignData:
-        """Have a campaign carried out; `campaign` tells how it goes."""
+        """Have a campaign executed; `campaign` tells how it goes."""
         return self._one(CampaignData, "POST", "/campaigns", wanted, within_s=_FORECAST_WITHIN_S)
 
     def campaigns(self) -> list[CampaignData]:
@@ -359,7 +359,7 @@ class Client(Requests):
         return self._several(TokenData, "/tokens")
 
     def make_token(self, name: str, role: Role, for_days: float = 365.0) -> TokenMade:
-        """Make a token that is valid for so many days; its secret is told this once."""
+        """Make a token that is valid for so many days; its secret is reported this once."""
         return self._one(TokenMade, "POST", "/tokens", TokenWanted(name=name, role=role, for_days=for_days))
 
     def audit(self, most: int = 100) -> list[AuditEntry]:

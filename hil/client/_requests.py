@@ -17,9 +17,9 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
+from hil.api_schemas.api import Problem
 from hil.core.errors import BenchError
 from hil.core.files import replacing
-from hil.messages.api import Problem
 
 A = TypeVar("A")
 T = TypeVar("T", bound=BaseModel)
@@ -45,7 +45,7 @@ class Requests:
 
     Args:
         url: where it is.
-        token: who asks; empty if nobody is asked.
+        token: who asks; empty if no one is asked.
     """
 
     def __init__(self, url: str, token: str = "") -> None:
@@ -111,7 +111,7 @@ class Requests:
 def first_of(ways: Sequence[Callable[[], object]], within_s: float) -> None:
     """Go several ways at the same moment; return as soon as one has led there.
 
-    A way on which nobody answers is tried again and again: a flooded service closes connections.
+    A way on which no one answers is tried again and again: a flooded service closes connections.
 
     Raises:
         BenchError: none has led there in time, or each was refused; it is what the last one met.
@@ -146,7 +146,7 @@ def first_of(ways: Sequence[Callable[[], object]], within_s: float) -> None:
 
 
 class _NoRedirect(urllib.request.HTTPRedirectHandler):
-    """A token is for one service: it follows nobody elsewhere."""
+    """A token is for one service: it follows no one elsewhere."""
 
     def redirect_request(self, *arguments: Any, **named: Any) -> None:
         """Follow nothing."""

@@ -1,4 +1,4 @@
-"""A service that does not answer for a while may be begun again, or its network come back."""
+"""A service that does not answer for a while may be started again, or its network come back."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 RIGID, TWO_INERTIA, THREE_INERTIA = 0.0, 1.0, 2.0
 #: Kinds of model files that are a chain.
 KINDS = {"rigid": RIGID, "two_inertia": TWO_INERTIA, "three_inertia": THREE_INERTIA}
-WHEEL_RADIUS_M = 0.33  # where nobody says another
+WHEEL_RADIUS_M = 0.33  # where no one says another
 
 
 class Chain(NamedTuple):

@@ -13,3 +13,5 @@ COMFORT_BAND_HZ = (8.0, 20.0)
 ENDING_SIGNALS = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT") if hasattr(signal, name)
 )
+#: Packages of this software, for logs and for versions.
+PACKAGES = ("hil", "drivers", "sim_backend", "test_plans", "reports")

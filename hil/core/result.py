@@ -8,12 +8,12 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from hil.core.errors import StopWay
-from hil.core.file_format import FORMAT, FormatNumber
+from hil.core.files.kinds import FORMAT, FormatNumber
 
-#: `done`: carried out, and no criterion of the plan has a limit.
+#: `done`: executed, and no criterion of the plan has a limit.
 Verdict = Literal["pass", "fail", "error", "done"]
 #: `informational`: no limit. `did_not_settle`: a failure if it has a limit, else counts as neither.
-#: `not_judged`: its segment was not carried out whole. `error`: could not be computed.
+#: `not_judged`: its segment was not executed whole. `error`: could not be computed.
 #: `undecided`: a comparison within its own scatter; it fails the run.
 CriterionVerdict = Literal[
     "pass", "fail", "undecided", "informational", "did_not_settle", "not_judged", "error"
@@ -284,7 +284,7 @@ class AcceptedExpiry(_Frozen):
 
 
 class BusLoad(_Frozen):
-    """Share of the time in which a bus carried frames, each with the most stuff bits that it may have."""
+    """Share of the time in which a bus was busy with frames, each with as many stuff bits as it can have."""
 
     bus: str
     bit_rate: int

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 
 _LONGEST = 40
 _SIGNS = str.maketrans(
@@ -48,7 +48,7 @@ _SPELLINGS = {
 }
 #: In which capital letters count.
 _EXACT = {"MNm": "MN*m", "MN m": "MN*m", "MN*m": "MN*m", "mW": "mW", "MW": "MW"}
-#: Of a speed nobody knows whether radians or revolutions are counted.
+#: Of a speed no one knows whether radians or revolutions are counted.
 _AMBIGUOUS = ("1/s", "s-1", "s^-1", "/s")
 _NO_UNIT = ("", "-", "1", "none", "n/a")
 

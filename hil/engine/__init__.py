@@ -1,9 +1,9 @@
-"""A run: pre-flight, arm, carry out, safe state, record."""
+"""A run: pre-flight, arm, execute, safe state, record."""
 
 from hil.engine.bench.bench_file import DEFAULT_BENCH, load_bench
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.ipc.ipc import RECORDING, RunOutcome, RunRequest
-from hil.engine.process.supervisor import carry_out
+from hil.engine.process.supervisor import execute
 from hil.engine.run.run import run_plan
 from hil.engine.stop.stopping import StopRequest
 
@@ -14,7 +14,7 @@ __all__ = [
     "RunOutcome",
     "RunRequest",
     "StopRequest",
-    "carry_out",
+    "execute",
     "load_bench",
     "run_plan",
 ]

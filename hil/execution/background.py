@@ -26,7 +26,7 @@ async def start_process(
         streams: as asyncio takes them.
 
     Raises:
-        OSError: it cannot be begun.
+        OSError: it cannot be started.
     """
     process = await asyncio.create_subprocess_exec(
         *command,

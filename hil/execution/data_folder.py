@@ -9,14 +9,14 @@ from pathlib import Path
 
 from hil.core.errors import BadInputError
 from hil.core.files import make_directory, read_text, write_atomically
-from hil.core.locks import HeldError, lock_on
+from hil.core.files.locks import HeldError, lock_on
 
 _LONGEST = 40
 
 
 @contextlib.contextmanager
 def alone_in(folder: Path, *, who: str, fix: str) -> Iterator[None]:
-    """Make the folder if it is not there, and let nobody else of `who` keep its data there meanwhile.
+    """Make the folder if it is not there, and let no one else of `who` keep its data there meanwhile.
 
     Raises:
         BadInputError: somebody does, or the folder cannot be made.
@@ -32,7 +32,7 @@ def alone_in(folder: Path, *, who: str, fix: str) -> Iterator[None]:
 
 
 def make_private(folder: Path) -> None:
-    """Make the folder if it is not there; nobody but its owner can read what is in it.
+    """Make the folder if it is not there; no one but its owner can read what is in it.
 
     Raises:
         BadInputError: it cannot be made, or is somebody else's.

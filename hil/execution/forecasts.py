@@ -9,14 +9,14 @@ import tempfile
 from collections import OrderedDict
 from pathlib import Path
 
+from hil.api_schemas.api import ForecastData
 from hil.app.requests import CheckRequest
 from hil.app.worker.job import JOB, write_request
 from hil.core.errors import BadInputError, BenchError
 from hil.core.files import read_bytes
 from hil.engine import BenchFile
 from hil.execution.background import FORECAST_BYTES, start_process
-from hil.execution.plan_files import files_of
-from hil.messages.api import ForecastData
+from hil.execution.files import files_of
 from test_plans import Plan
 
 _AT_ONCE = 1  # a run needs the other processor
@@ -57,7 +57,7 @@ class Forecasts:
                 if loaded.parent == plan.source.parent:
                     (file.parent / loaded.name).write_bytes(read_bytes(loaded))
             write_request(file.parent, CheckRequest(plan=str(file), bench=str(bench.source)))
-            code, out, complaint = await self._carry_out(file.parent)
+            code, out, complaint = await self._execute(file.parent)
         if code in (0, 1):
             found = json.loads(out)
             return ForecastData.model_validate({name: found[name] for name in ForecastData.model_fields})
@@ -65,7 +65,7 @@ class Forecasts:
         kind = BadInputError if code == BadInputError.exit_code else BenchError
         raise kind(what or "the forecast was ended", where="forecast")
 
-    async def _carry_out(self, folder: Path) -> tuple[int, bytes, str]:
+    async def _execute(self, folder: Path) -> tuple[int, bytes, str]:
         process = await start_process(
             *JOB,
             str(folder),

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, Protocol
 
+from hil.api_schemas.agent import TakenRun
+from hil.api_schemas.api import RunData
 from hil.core.errors import HilError
 from hil.core.files import make_directory, write_atomically
 from hil.core.result import RunResult
@@ -14,8 +16,6 @@ from hil.engine import RECORDING
 from hil.engine.ipc.ipc_messages import EmergencyAsked, OperatorText, Progressed, Refused, RunAsked
 from hil.execution.benches import Bench
 from hil.execution.run_process import RunProcess, result_in
-from hil.messages.agent import TakenRun
-from hil.messages.api import RunData
 
 PLAN = "plan.yaml"
 _NOTHING = "the {who} ended before the recording started; the run can be queued again"
@@ -43,14 +43,14 @@ class Steered(Protocol):
 
 @dataclass
 class RunningRun:
-    """A run under way. `told`: the last text for its operator."""
+    """A run under way. `message`: the last text for its operator."""
 
     data: RunData
     folder: Path
     process: Steered
     share: float | None = None
     doing: str = "beginning"
-    told: str = ""
+    message: str = ""
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class RunExecution(RunningRun):
                 self.share = message.share if message.share >= 0 else self.share
                 self.doing = message.text
             elif isinstance(message, OperatorText):
-                self.told = message.text
+                self.message = message.text
             elif isinstance(message, Refused):
                 refused = message.error.as_error()
             changed()
@@ -121,7 +121,7 @@ class RunExecution(RunningRun):
         return RunEnd("interrupted" if closing() else "ended", code, result, reason, dut)
 
     def _asks_no_more(self) -> None:
-        self.told = ""
+        self.message = ""
 
 
 def end_of_left(folder: Path, who: str) -> RunEnd:
@@ -134,7 +134,7 @@ def end_of_left(folder: Path, who: str) -> RunEnd:
 
 
 def _request_of(taken: TakenRun, bench: Bench, folder: Path) -> RunAsked:
-    """What the process of a run is told.
+    """What the process of a run gets to know.
 
     Raises:
         BadInputError: the bench's file cannot be used any more.

@@ -1,4 +1,4 @@
-"""A run's own process: started, told what to do, listened to. It is what `hil run` is, without a terminal."""
+"""A run's own process: started, instructed, listened to. It is what `hil run` is, without a terminal."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from pathlib import Path
 
 from hil.app.worker.served_run import RUNNER
 from hil.core.errors import BenchError
-from hil.core.locks import HeldError, lock_on
+from hil.core.files.locks import HeldError, lock_on
 from hil.core.result import RunResult
 from hil.engine.ipc.ipc_messages import EmergencyAsked, Message, RunAsked, Typed, from_line, to_line
 from hil.engine.run.operator import END, PAUSE, RESUME
 from hil.execution.background import start_process
-from hil.execution.run_files import LOCK
+from hil.execution.files import LOCK
 
 RESULT = "result.json"
 _LONGEST_LINE = 1 << 24
@@ -23,7 +23,7 @@ _LONGEST_LINE = 1 << 24
 class RunProcess:
     """One run in a process of its own, which ends its run by itself when the service is gone.
 
-    `answered` is called when somebody said something that a run which is held, or asks, waits for.
+    `answered` is called when somebody answered what a run which is held, or asks, waits for.
     """
 
     def __init__(self, process: asyncio.subprocess.Process) -> None:
@@ -35,7 +35,7 @@ class RunProcess:
         """Start the process and tell it what to do.
 
         Args:
-            stop_line: a descriptor from which it takes emergency stops, besides what it is told by this one.
+            stop_line: a descriptor from which it takes emergency stops, besides the requests of this one.
 
         Raises:
             OSError: it cannot be started, or its folder cannot be written.

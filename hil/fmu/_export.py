@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hil.core.controller import Controller
-from hil.core.extras import need
+from hil.core.errors.extras import need
 from hil.core.files import replacing
 from hil.core.model import Model, model_to_toml
 from hil.fmu.axle import Axle
@@ -29,7 +29,7 @@ def export_fmu(model: Model, out: Path, controller: tuple[Controller, str] | Non
     """
     need("pythonfmu")
     builder: Any = importlib.import_module("pythonfmu")
-    Axle(model, controller[0] if controller else None)  # what cannot be is told now, not in another tool
+    Axle(model, controller[0] if controller else None)  # what cannot be is reported now, not in another tool
     with tempfile.TemporaryDirectory() as directory, replacing(out) as temporary:
         folder = Path(directory)
         script = folder / "eaxle_unit.py"

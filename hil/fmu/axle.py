@@ -8,11 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers import parameters_of
+from hil.core.can.signals import Signal
 from hil.core.controller import Controller
 from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError
 from hil.core.model import Model, refuse_without_vehicle
-from hil.core.signals import Signal
 from hil.plant.closed_loop import SIDES, ClosedLoop, Wire
 from hil.plant.closed_loop import drive as D
 from hil.plant.closed_loop import tick as T
@@ -27,6 +27,11 @@ OUTPUTS: dict[str, tuple[str, str, tuple[int, ...], float]] = {
     "motor_torque_ref_nm": ("N.m", "torque asked of the inverter", (T.TORQUE_REF,), 1.0),
     "motor_torque_nm": ("N.m", "motor torque", (T.TORQUE,), 1.0),
     "driving_torque_est_nm": ("N.m", "driving torque by the observer", (T.DRIVING_EST,), 1.0),
+}
+_SIDES = {
+    "wheel_speed_rad_s": (T.WHEEL_LEFT, T.WHEEL_RIGHT),
+    "shaft_torque_nm": (T.SHAFT_LEFT, T.SHAFT_RIGHT),
+    "dyno_torque_nm": (T.LOAD_LEFT, T.LOAD_RIGHT),
 }
 _EXACT = Signal("exact", 0, 64, is_float=True)  # nothing rounds here
 _RAMP_RAD_S2 = 40.0
@@ -88,6 +93,16 @@ class Axle:
             name: share * rows[:, list(columns)].sum(axis=1)
             for name, (_, _, columns, share) in OUTPUTS.items()
         }
+
+    def play_sides(self, torque_nm: npt.NDArray[np.float64]) -> dict[str, npt.NDArray[np.float64]]:
+        """As `play`; what was measured at each side, of shape (samples, 2), left and right.
+
+        Wheel speed, shaft torque, and the torque that each dynamometer, or tyre, takes: `dyno_torque_nm`.
+        """
+        before = self._loop.samples
+        self._loop.play(self._mode, torque_nm)
+        rows = self._loop.rows[before:]
+        return {name: rows[:, list(columns)] for name, columns in _SIDES.items()}
 
     def outputs(self) -> Mapping[str, float]:
         """The sample of this moment, by name, if `torque_nm` goes on being asked for."""

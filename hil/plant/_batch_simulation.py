@@ -14,19 +14,19 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.chain import Chain
-from hil.core.compiled import compiled, compiled_without_lock, inlined
 from hil.core.model import TransferFunction
-from hil.core.thread_map import map_on_threads, threads
+from hil.core.runtime.compiled import compiled, compiled_without_lock, inlined
+from hil.core.runtime.thread_map import map_on_threads, threads
 from hil.plant import _forces as F
 from hil.plant import _laws as L
 from hil.plant import _slots as P
 from hil.plant import _states as X
-from hil.plant._friction import mean_friction
 from hil.plant._functions import respond_many
 from hil.plant._held_linear import step_matrices
 from hil.plant._kernel import as_tuple
 from hil.plant._motion import acting_of, chain_of, motion_of, relative_speed
 from hil.plant._sensors import COLUMNS, GAIN, record
+from hil.plant._stick_slip import mean_friction
 from hil.plant._torque_path import over_samples
 from hil.plant._tuples import plus_product, plus_row, put
 
@@ -171,7 +171,7 @@ def _shown(acting, ends, dt, whole, p, out):  # type: ignore[no-untyped-def]
 @compiled
 def _first_state(p, start, acting):  # type: ignore[no-untyped-def]
     """State and memories that show a start."""
-    memories, twist = L.begun(start[SHAFT], chain_of(p), p)
+    memories, twist = L.initial(start[SHAFT], chain_of(p), p)
     memories = L.turned(start[SPEED], chain_of(p), memories, p)
     x = put(put(X.LINEAR_AT_REST, X.LAGGED, acting), X.ROTOR_SPEED, start[SPEED])
     if p[P.KIND] == P.RIGID:

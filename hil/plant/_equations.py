@@ -7,12 +7,12 @@ Wheel-side quantities are sums of both sides.
 
 from __future__ import annotations
 
-from hil.core.compiled import inlined
+from hil.core.runtime.compiled import inlined
 from hil.plant import _laws as L
 from hil.plant import _slots as P
 from hil.plant import _states as X
-from hil.plant._friction import friction_torque
 from hil.plant._motion import chain_of, motion_of, relative_speed
+from hil.plant._stick_slip import friction_torque
 from hil.plant._tuples import put
 
 _TRACKING_RATE_1_S = 100.0  # how fast the idle vehicle model follows the wheel while the dyno leads
@@ -20,7 +20,7 @@ _TRACKING_RATE_1_S = 100.0  # how fast the idle vehicle model follows the wheel 
 
 @inlined
 def motion(x, chain, memories, p):  # type: ignore[no-untyped-def]
-    """What laws are told of a state with its own angles."""
+    """What laws get to know of a state with its own angles."""
     rotor_angle = chain.gear_ratio * (x[X.TWIST] + x[X.WHEEL_ANGLE] - x[X.HOUSING_ANGLE])
     return motion_of(x, chain, memories, x[X.WHEEL_ANGLE], rotor_angle, p)
 

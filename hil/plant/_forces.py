@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from hil.core.compiled import inlined
+from hil.core.runtime.compiled import inlined
 from hil.plant import _laws as L
 from hil.plant import _slots as P
 from hil.plant import _states as X
-from hil.plant._friction import friction_torque
 from hil.plant._motion import chain_of, relative_speed, turning
+from hil.plant._stick_slip import friction_torque
 
 # Of the forces: the inputs of `_linear` behind the torque
 SHAFT, LOSS, LOAD, TYRE, TYRE_RATE = range(5)

@@ -13,7 +13,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.compiled import compiled
+from hil.core.runtime.compiled import compiled
 from hil.plant import _slots as P
 from hil.plant import _states as X
 from hil.plant._linear import SHAFT, TORQUE, system

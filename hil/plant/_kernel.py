@@ -9,13 +9,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numba.extending import overload
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
-from hil.core.compiled import compiled, inlined
+from hil.core.runtime.compiled import chosen_by_type, compiled, inlined
 from hil.plant import _equations as E
 from hil.plant import _laws as L
 from hil.plant import _slots as P
 from hil.plant import _states as X
+from hil.plant import sides as S
 from hil.plant._motion import acting_of, chain_of, relative_speed
 from hil.plant._tuples import plus, put
 
@@ -31,7 +33,6 @@ OUTPUT_COLUMNS = 6
     START_WHEEL_ANGLE,
 ) = range(5)
 _PARAMETERS = len(P.SLOTS)
-_MOVING = X.MOVING
 _MEMORIES = len(X.NO_MEMORY)
 
 
@@ -44,10 +45,21 @@ def as_tuple(vector):  # type: ignore[no-untyped-def]
     return to_fixed_tuple(vector, _PARAMETERS)
 
 
-@inlined
-def as_state(array):  # type: ignore[no-untyped-def]
-    """The moving state and the memories that an array holds, by value."""
-    return to_fixed_tuple(array[:_MOVING], _MOVING), to_fixed_tuple(array[_MOVING:], _MEMORIES)
+@chosen_by_type
+def as_state(array, form):  # type: ignore[no-untyped-def]
+    """The moving state and the memories that an array holds, by value; as many moving ones as `form` has."""
+    return tuple(array[: len(form)]), tuple(array[len(form) :])
+
+
+@overload(as_state, jit_options={"error_model": "numpy", "forceinline": True})
+def _as_state(array, form):  # type: ignore[no-untyped-def]
+    del array
+    moving, memories = len(form), _MEMORIES
+
+    def cut(array, form):  # type: ignore[no-untyped-def] # noqa: ARG001
+        return to_fixed_tuple(array[:moving], moving), to_fixed_tuple(array[moving:], memories)
+
+    return cut
 
 
 @compiled
@@ -62,16 +74,16 @@ def _after(x, memories, y, p, h):  # type: ignore[no-untyped-def]
 def _step(x, memories, p, acting, torque, coupled, load, h, direction):  # type: ignore[no-untyped-def]
     """One Runge-Kutta step of `h` seconds; dry friction keeps its direction over it."""
     kept = memories
-    k1 = E.derivative(x, kept, p, acting, torque, coupled, load, direction)
+    k1 = S.derivative(x, kept, p, acting, torque, coupled, load, direction)
     y = plus(x, 0.5 * h, k1)
     if acting.memory:
         kept = _after(x, memories, y, p, 0.5 * h)
-    k2 = E.derivative(y, kept, p, acting, torque, coupled, load, direction)
-    k3 = E.derivative(plus(x, 0.5 * h, k2), kept, p, acting, torque, coupled, load, direction)
+    k2 = S.derivative(y, kept, p, acting, torque, coupled, load, direction)
+    k3 = S.derivative(plus(x, 0.5 * h, k2), kept, p, acting, torque, coupled, load, direction)
     y = plus(x, h, k3)
     if acting.memory:
         kept = _after(x, memories, y, p, h)
-    k4 = E.derivative(y, kept, p, acting, torque, coupled, load, direction)
+    k4 = S.derivative(y, kept, p, acting, torque, coupled, load, direction)
     y = plus(plus(plus(plus(x, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4)
     return y, kept
 
@@ -158,7 +170,7 @@ def outputs(x, memories, p, slewed, coupled, load, row):  # type: ignore[no-unty
 def initial_state(p, motor_speed, wheel_speed, shaft_torque, motor_torque, wheel_angle):  # type: ignore[no-untyped-def]
     """State and memories that show the given speeds (rad/s) and torques (N m), the road coupling at rest."""
     chain = chain_of(p)
-    memories, twist = L.begun(shaft_torque, chain, p)
+    memories, twist = L.initial(shaft_torque, chain, p)
     memories = L.turned(motor_speed, chain, memories, p)
     if chain.kind != P.RIGID:
         twist += shaft_torque / chain.shaft_stiffness

@@ -14,7 +14,7 @@ that calls it, not when a compiled one is loaded:
     steepest: the steepest slope of the acting torque in N m/s: (p)
     stretched: what is left of a twist for the shafts: (twist, chain, memories, p)
     remembered: the memories after a step of h seconds: (before, after, chain, memories, p, h)
-    begun: memories at a start with a shaft torque, and their twist in series: (torque, chain, p)
+    started: memories at a start with a shaft torque, and their twist in series: (torque, chain, p)
     turned: memories at a start in motion: (speed, chain, memories, p)
 """
 
@@ -28,8 +28,8 @@ from typing import Any, NamedTuple
 
 from numba import njit
 
-from hil.core.compiled import depends_on
 from hil.core.effects import STRANGERS, Effect
+from hil.core.runtime.compiled import depends_on
 from hil.plant import _slots as P
 from hil.plant import _states as X
 from hil.plant._tuples import put
@@ -286,6 +286,6 @@ _MAKERS: dict[str, Callable[[], Any]] = {
     "remembered": lambda: _in_turn(
         "remember", _remembered, lambda before, after, chain, memories, p, h: memories
     ),
-    "begun": lambda: _in_turn("begin", _begin_with, lambda torque, chain, p: (_EMPTY, 0.0)),
+    "initial": lambda: _in_turn("begin", _begin_with, lambda torque, chain, p: (_EMPTY, 0.0)),
     "turned": lambda: _in_turn("turned", _turned, lambda speed, chain, memories, p: memories),
 }

@@ -1,7 +1,7 @@
 """The driveline as a linear system, for all who need one: many replays, identification, design, orders.
 
 x' = A·x + B·u, y = C·x + D·u. Nonlinear effects stand as inputs: what the shafts carry beside stiffness and
-damping, what the rotor loses beside drag, what loads the vehicle. The dead time is told, not in the matrices.
+damping, what the rotor loses beside drag, what loads the vehicle. The dead time stands beside the matrices.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.compiled import compiled, inlined
 from hil.core.errors import BadInputError
 from hil.core.model import Model
+from hil.core.runtime.compiled import compiled, inlined
 from hil.plant import _slots as P
 from hil.plant import _states as X
 from hil.plant._table import Table

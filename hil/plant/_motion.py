@@ -1,12 +1,12 @@
-"""A state as the laws of effects are told of it, and which of them do anything."""
+"""A state as the laws of effects see it, and which of them do anything."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 from hil.core.chain import Chain
-from hil.core.compiled import inlined
 from hil.core.effects import Motion
+from hil.core.runtime.compiled import inlined
 from hil.plant import _laws as L
 from hil.plant import _slots as P
 from hil.plant import _states as X
@@ -41,7 +41,7 @@ def chain_of(p):  # type: ignore[no-untyped-def]
 
 @inlined
 def turning(speed):  # type: ignore[no-untyped-def]
-    """What a law of dry friction is told: the rotor turns against the housing, all else is at rest."""
+    """What a law of dry friction is reported: the rotor turns against the housing, all else is at rest."""
     return Motion(speed, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -53,7 +53,7 @@ def relative_speed(x):  # type: ignore[no-untyped-def]
 
 @inlined
 def motion_of(x, chain, memories, wheel_angle, rotor_angle, p):  # type: ignore[no-untyped-def]
-    """What laws are told of a state."""
+    """What laws see of a state."""
     wheel = x[X.WHEEL_SPEED]
     rotor = relative_speed(x)
     return Motion(

@@ -17,6 +17,7 @@ from hil.plant import _kernel, _slots
 from hil.plant._functions import respond_many
 from hil.plant._sensors import measured, sensor_of
 from hil.plant._stability import LONGEST_STEP_S, refuse_divergence, refuse_too_stiff
+from hil.plant.sides import refuse_separate
 
 Array = npt.NDArray[np.float64]
 
@@ -59,6 +60,7 @@ def simulate(
         motor_torque_nm, motor_speed_rad_s, wheel_speed_rad_s and shaft_torque_nm, each of shape (n,)
         (a transfer-function model gives those it has functions for).
     """
+    refuse_separate(model, "a simulation")
     start = start or Start()
     torque = np.ascontiguousarray(torque_ref_nm, dtype=float)
     if model.kind == "transfer_function":

@@ -11,10 +11,10 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.compiled import compiled, inlined
 from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
+from hil.core.runtime.compiled import compiled, inlined
 from hil.plant._table import Table
 
 Array = npt.NDArray[np.float64]

@@ -43,7 +43,7 @@ CHAIN = len(SLOTS)
     WHEEL_RADIUS,
 ) = range(CHAIN)
 
-#: Effects that the kernels carry out, in the order in which they act.
+#: Effects that the kernels execute, in the order in which they act.
 ACTING: tuple[Effect, ...] = tuple(effect for effect in EFFECTS.values() if effect.law.compiled)
 #: First slot of each of them; its numbers stand in the order of its parameters.
 FIRST: dict[str, int] = {}

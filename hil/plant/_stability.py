@@ -86,7 +86,7 @@ def _refuse(source: str, what: str, longest_step_s: float) -> NoReturn:
 def _worst(model: Model, longest_step_s: float) -> complex | None:
     """The fastest rate (1/s) that Runge-Kutta steps of this length let grow and nature does not."""
     if model.kind == "transfer_function":
-        return None  # its functions are carried from sample to sample exactly
+        return None  # its functions are propagated from sample to sample exactly
     rates = np.linalg.eigvals(system(P.pack(model))[0])
     z = rates * longest_step_s
     by_steps = np.abs(1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0))))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from hil.core.compiled import compiled
+from hil.core.runtime.compiled import compiled
 from hil.plant import _laws as L
 from hil.plant._kernel import as_tuple
 

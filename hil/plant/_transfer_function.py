@@ -7,8 +7,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.compiled import compiled
 from hil.core.model import TransferFunction
+from hil.core.runtime.compiled import compiled
 
 Array = npt.NDArray[np.float64]
 

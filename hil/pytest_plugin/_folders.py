@@ -17,7 +17,7 @@ class Folders:
         self._count = 0
 
     def next(self, name: str) -> Path:
-        """The next run's folder: NAME-001 and so on; without `overwrite` it is made, as nobody else's."""
+        """The next run's folder: NAME-001 and so on; without `overwrite` it is made, as no one else's."""
         while True:
             self._count += 1
             folder = self._place / f"{name}-{self._count:03d}"

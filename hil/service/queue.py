@@ -1,7 +1,7 @@
 """The queue: begins the runs of each bench one after the other, each in a process of its own.
 
 A run is written down as running before its process is started, and as over when that has ended. Whatever
-the moment at which the service is killed: what was running is found again, and is never begun twice.
+the moment at which the service is killed: what was running is found again, and is never started twice.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from hil.api_schemas.agent import TakenRun
+from hil.api_schemas.api import BenchState, RunData
 from hil.core.errors import BenchError, HilError
 from hil.execution.benches import Bench
+from hil.execution.files import folder_of
 from hil.execution.run_execution import RunEnd, RunExecution, RunningRun, end_of_left
-from hil.execution.run_files import folder_of
 from hil.execution.run_process import alive_in
-from hil.messages.agent import TakenRun
-from hil.messages.api import BenchState, RunData
 from hil.service.stop_post import StopPost
 from hil.service.store import BenchStore, DatabaseAwayError, LeaseStore, RunStore, in_turns
 
@@ -44,7 +44,7 @@ class _Place:
     looked_s: float = -1e9
     held_by: str = ""  # another service of the same database
     held_s: float = -1e9
-    unsure: int | None = None  # taken while the database went away: perhaps so, and certainly not begun
+    unsure: int | None = None  # taken while the database went away: perhaps so, and certainly not started
 
 
 class Queue:
@@ -120,7 +120,7 @@ class Queue:
     async def work(self) -> None:
         """Begin runs as benches become free, until `close`."""
         while not self._closing:
-            with contextlib.suppress(DatabaseAwayError):  # nothing is begun until it answers
+            with contextlib.suppress(DatabaseAwayError):  # nothing is started until it answers
                 for place in self._places.values():
                     await self._look(place)
             with contextlib.suppress(TimeoutError):
@@ -193,7 +193,7 @@ class Queue:
             place.unsure = run.id
             return
         except OSError as error:  # no descriptor, no memory for a process: it is tried again
-            logger.error("run %d cannot be begun now: %s", run.id, error)
+            logger.error("run %d cannot be started now: %s", run.id, error)
             place.unsure = run.id
             return
         except HilError as error:

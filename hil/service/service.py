@@ -14,14 +14,14 @@ from pathlib import Path
 
 from sqlalchemy import Engine
 
+from hil.api_schemas.api import OVER, BenchData, BenchState, ForecastData, Me, RunData
+from hil.api_schemas.campaign import CampaignData
+from hil.api_schemas.study import StudyData
 from hil.execution.benches import Bench
 from hil.execution.daemon_thread import apart
+from hil.execution.files import files_in
 from hil.execution.forecasts import Forecasts
 from hil.execution.run_execution import RunningRun
-from hil.execution.run_files import files_in
-from hil.messages.api import OVER, BenchData, BenchState, ForecastData, Me, RunData
-from hil.messages.campaign import CampaignData
-from hil.messages.study import StudyData
 from hil.service.agents.agents import Agents
 from hil.service.agents.agents_forecasts import AgentsForecasts
 from hil.service.agents.remote_bench import RemoteBench
@@ -141,8 +141,8 @@ class Service:
         self.deferred_audit = DeferredAudit(self.log)
 
     async def _share(self) -> str:
-        said = await self.studies.share(), await self.campaigns.share()
-        return "; ".join(filter(None, said))
+        problems = await self.studies.share(), await self.campaigns.share()
+        return "; ".join(filter(None, problems))
 
     @property
     def benches(self) -> Mapping[str, Bench | RemoteBench]:
@@ -216,7 +216,7 @@ class Service:
         running = self.running_run(run.id)
         if running is not None:
             away = f"; {self.database.away}" if self.database.away else ""
-            doing = {"share": running.share, "doing": running.doing + away, "told": running.told}
+            doing = {"share": running.share, "doing": running.doing + away, "message": running.message}
             return run.model_copy(update=doing)
         return run
 

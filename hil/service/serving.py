@@ -16,13 +16,13 @@ from pathlib import Path
 import uvicorn
 from sqlalchemy import Engine
 
+from hil.api_schemas.api import ROLES, Role, TokenMade
 from hil.core.errors import BadInputError, BenchError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.engine import StopRequest
 from hil.execution.benches import benches_of
 from hil.execution.daemon_thread import going_on
 from hil.execution.data_folder import alone_in, make_private, name_in
-from hil.messages.api import ROLES, Role, TokenMade
 from hil.service.api import Guarding, Rates, StopAddress, application, bounded
 from hil.service.archive import Archive
 from hil.service.jobs.campaigns import Simulating
@@ -196,7 +196,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
     await asyncio.wait([posting], timeout=_LAST_ANSWERS_S)
     for task in done:
         if not task.cancelled():
-            task.result()  # a mistake of ours in one of them is told
+            task.result()  # a mistake of ours in one of them is reported
     await in_turns(service.leave())
 
 

@@ -7,7 +7,7 @@ import math
 import statistics
 from collections.abc import Iterable, Sequence
 
-from hil.messages.api import TrendData, TrendPoint
+from hil.api_schemas.api import TrendData, TrendPoint
 from test_plans import CHECKS
 
 #: Mean range of two values of a normal distribution, in standard deviations (ISO 7870-2, d2 for n = 2).

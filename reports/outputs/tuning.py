@@ -10,7 +10,7 @@ import numpy as np
 
 from hil.analysis.tuning import RefinedRun, Standing, Tuning, front_of, metrics_of, point_of, values_of
 from hil.core.controller import Controller, controller_to_toml
-from hil.core.digits import share
+from hil.core.errors.digits import share
 from hil.core.result import Segment
 from reports import drawings
 
@@ -62,7 +62,7 @@ def _front_picture(found: Tuning) -> dict[str, bytes] | None:
 def summary_of(
     found: Tuning, segments: tuple[Segment, ...], asked: Mapping[str, Any], files: list[str]
 ) -> dict[str, Any]:
-    """The content of `tune.json`; `asked` is what the command was told."""
+    """The content of `tune.json`; `asked` are the options of the command."""
     trial, worst = found.trial, found.chosen.worst
     return {
         **asked,

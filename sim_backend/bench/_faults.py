@@ -15,4 +15,4 @@ class Fault(Enum):
     RMCU_RESET = "the RMCU boots for 0.3 s; then it is off, without parameters, and no request has come"
     DYNO_RESET = "the left rear dyno boots: its drive is off, what was configured is forgotten, its SYNC too"
     DYNO_FAULT = "the left rear drive goes to fault and tells why"
-    DYNO_RUNAWAY = "the rear drives go to a speed that nobody asked for, and cannot be switched off"
+    DYNO_RUNAWAY = "the rear drives go to a speed that no one asked for, and cannot be switched off"

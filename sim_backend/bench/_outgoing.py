@@ -8,10 +8,10 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.can.frames import FrameBlock, empty_block, frames, joined
+from hil.core.can.signals import FrameLayout
 from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError
-from hil.core.frames import FrameBlock, empty_block, frames, joined
-from hil.core.signals import FrameLayout
 from hil.plant.closed_loop import tick as T
 from sim_backend.bench._daq_traffic import DaqTraffic
 from sim_backend.bench._traffic import CyclicTraffic, EventSlots, Shown

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from hil.core.dbc import Names
+from hil.core.can.dbc import Names
 from hil.core.model import Model
 from sim_backend.rmcu import RamSettings
 
@@ -57,5 +57,5 @@ class SimulationSettings:
     names: Names = field(default_factory=Names)  # what the DBC calls things
     held: Mapping[str, float] = field(
         default_factory=dict
-    )  # parameters that the RMCU keeps, whatever it is told
+    )  # parameters that the RMCU keeps, whatever is written
     ram: RamSettings | None = None  # what its memory shows by XCP

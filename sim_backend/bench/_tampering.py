@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.frames import FrameBlock
+from hil.core.can.frames import FrameBlock
 
 
 class Tamper(Protocol):

@@ -7,11 +7,11 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.checksum import crc8_of
-from hil.core.compiled import compiled
+from hil.core.can.checksum import crc8_of
+from hil.core.can.frames import FRAME, FrameBlock, longest_frame_s
+from hil.core.can.signals import FrameLayout, payload_with
 from hil.core.conventions import TICK_S
-from hil.core.frames import FRAME, FrameBlock, longest_frame_s
-from hil.core.signals import FrameLayout, payload_with
+from hil.core.runtime.compiled import compiled
 
 #: A frame with the column of a bench row that each of its signals shows.
 Shown = tuple[FrameLayout, dict[str, int]]
@@ -33,11 +33,11 @@ class EventSlots:
         """When the next frame of an event in a sample has crossed, in a later one where that is full."""
         frame_s = longest_frame_s(8, self.bit_rate)
         free_s = max(sample * TICK_S + self.begin_s, self._last_s)
-        begun = math.floor(free_s / TICK_S + 1e-9) * TICK_S
-        if free_s < begun + self.begin_s:  # the next sample's own frames come first
-            free_s = begun + self.begin_s
-        if free_s + frame_s > begun + TICK_S and self.begin_s + frame_s <= TICK_S:
-            free_s = begun + TICK_S + self.begin_s
+        started = math.floor(free_s / TICK_S + 1e-9) * TICK_S
+        if free_s < started + self.begin_s:  # the next sample's own frames come first
+            free_s = started + self.begin_s
+        if free_s + frame_s > started + TICK_S and self.begin_s + frame_s <= TICK_S:
+            free_s = started + TICK_S + self.begin_s
         self._last_s = free_s + frame_s
         return self._last_s
 

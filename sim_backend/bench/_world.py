@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.can.dbc import Names, read_dbc
+from hil.core.can.frames import FrameBlock, longest_frame_s
 from hil.core.conventions import TICK_S
-from hil.core.dbc import Names, read_dbc
 from hil.core.errors import BadInputError
-from hil.core.frames import FrameBlock, longest_frame_s
 from hil.plant.closed_loop import Noise, advance, state_at_rest
 from hil.plant.closed_loop import drive as drive
 from hil.plant.closed_loop import tick as T
@@ -250,6 +250,7 @@ class SimulatedBench:
         advance(
             first,
             self._plant.x,
+            self._plant.form,
             self._plant.vector,
             self._plant.scalars,
             self._plant.torques,
@@ -266,7 +267,7 @@ class SimulatedBench:
         )
 
     def _mended(self, sample: int) -> BadInputError | None:
-        """That the simulation diverges, said once; the axle stands then, so that its host can end the run."""
+        """That the simulation diverges, once; the axle stands then, so that its host can end the run."""
         try:
             self._plant.refuse_diverged(sample * TICK_S)
         except BadInputError as error:
@@ -324,7 +325,7 @@ class SimulatedBench:
             self._xcp.overloaded()
 
     def reset_xcp(self) -> None:
-        """The slave starts again; nobody is connected to it."""
+        """The slave starts again; no one is connected to it."""
         if self._xcp is not None:
             self._compute()
             self._emit()

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 from canopen.objectdictionary import SIGNED_TYPES, ODVariable
 
-from hil.core.pdo import ObjectDictionary, identifier_of, layout_of_pdo, read_eds
-from hil.core.signals import FrameLayout, in_units
+from hil.core.can.eds import ObjectDictionary, identifier_of, layout_of_pdo, read_eds
+from hil.core.can.signals import FrameLayout, in_units
 from hil.plant.closed_loop import drive as law
 from sim_backend.rcs._objects import INVALID_VALUE, ServedNode, check_value
 from sim_backend.rcs._power_states import PowerStates, State

@@ -11,7 +11,7 @@ from canopen.sdo import SdoAbortedError, SdoServer
 
 _SDO_LENGTH = 8
 _SERVICE = 0xE0
-_SEGMENTS = (0 << 5, 3 << 5)  # download segment, upload segment: nothing without a transfer that was begun
+_SEGMENTS = (0 << 5, 3 << 5)  # download segment, upload segment: nothing without a transfer that was started
 _ABORT = 4 << 5
 _EXPEDITED, _SIZE_SPECIFIED = 0x02, 0x01
 
@@ -80,7 +80,7 @@ def check_value(value: float, low: float | None, high: float | None) -> None:
 
 
 class _Server(SdoServer):  # type: ignore[misc]
-    """canopen's server, which trips over transfers that nobody began and refuses only when all has come."""
+    """canopen's server, which trips over transfers that no one began and refuses only when all has come."""
 
     def on_request(self, can_id: int, data: bytearray, timestamp: float) -> None:
         """Answer one frame of a client."""

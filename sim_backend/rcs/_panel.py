@@ -24,7 +24,7 @@ _READ = {read: write for write, (read, *_) in _SETTINGS.items()}
 
 
 class EmulatedPanel:
-    """What the panel answers; `taken` is told each value that somebody wrote."""
+    """What the panel answers; `taken` is called with each value that somebody wrote."""
 
     def __init__(self, taken: Callable[[VehicleAndRoad], None] = lambda vehicle: None) -> None:
         self.remote = False
@@ -105,13 +105,13 @@ class PanelPort:
             # Asked twice a second: the terminal may be behind computed time
             select.select([self._own], [], [], _LOOK_S)
         try:
-            said = self.panel.hear(os.read(self._own, 4096))
+            answer = self.panel.hear(os.read(self._own, 4096))
         except BlockingIOError:
             return
         self._quiet = 0
-        if said:
-            os.write(self._own, said)
-        if said and self._waits:
+        if answer:
+            os.write(self._own, answer)
+        if answer and self._waits:
             select.select([self._theirs], [], [], 1.0)  # computed time is fast: let the terminal pass it on
 
     def close(self) -> None:

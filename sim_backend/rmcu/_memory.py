@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.symbols import Symbol
+from hil.core.can.symbols import Symbol
 from hil.plant.closed_loop import tick as T
 
 #: What the emulated RMCU has in its memory, by channel: the column of a bench row.

@@ -6,8 +6,7 @@ import struct
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from hil.core.conventions import TICK_S
-from hil.core.xcp import (
+from hil.core.can.xcp import (
     ANSWER,
     DAQ_RUNNING,
     DYNAMIC,
@@ -34,6 +33,7 @@ from hil.core.xcp import (
     cycle_and_unit,
     time_stamp_mode,
 )
+from hil.core.conventions import TICK_S
 from sim_backend.rmcu._memory import RmcuMemory
 
 STAMP_BYTES, STAMP_TICK_S = 2, 1e-4
@@ -84,7 +84,7 @@ class XcpSlave:
         self.reset()
 
     def reset(self) -> None:
-        """As after power on: nobody is connected, nothing is sent."""
+        """As after power on: no one is connected, nothing is sent."""
         self.connected = False
         self.lists: list[DaqList] = []
         if self._static:

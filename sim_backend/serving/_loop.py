@@ -9,9 +9,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from hil.core.can.frames import FrameBlock
 from hil.core.conventions import TICK_S
-from hil.core.frames import FrameBlock
-from hil.core.real_time import undisturbed
+from hil.core.runtime.real_time import undisturbed
 from sim_backend.bench import SimulatedBench
 
 _LONGEST_CATCH_UP_S = 0.5  # a host that was held up as well goes on after no longer a pause
@@ -50,7 +50,7 @@ class BusServer(Protocol):
 
 @dataclass
 class Pace:
-    """How well the wall clock was kept; seconds of the wall clock where nothing else is said.
+    """How well the wall clock was kept; seconds of the wall clock where nothing else is stated.
 
     Attributes:
         turns: looks at the wires, one each millisecond of bench time.

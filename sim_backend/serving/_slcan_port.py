@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from hil.core.frames import EXTENDED, FrameBlock
+from hil.core.can.frames import EXTENDED, FrameBlock
 
 _BELL, _OK = b"\a", b"\r"
 _MOST_WAITING = 1 << 18  # bytes; some seconds of a full bus
@@ -33,7 +33,7 @@ class SlcanPort:
         import tty
 
         self._ours, self._theirs = pty.openpty()
-        tty.setraw(self._theirs)  # or it would say back what it is told
+        tty.setraw(self._theirs)  # or it would echo what it is sent
         os.set_blocking(self._ours, False)
         self._bit_rate, self._set_rate = bit_rate, 0
         self._open = False

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, FrameBlock
 
 _FRAME = struct.Struct("=IB3x8s")  # linux/can.h: struct can_frame
 _STAMP = struct.Struct("=qq")  # struct timespec
@@ -62,14 +62,14 @@ class SocketcanPort:
         frames: list[tuple[float | None, int, bytes]] = []
         while True:
             try:
-                raw, told, _, _ = self._socket.recvmsg(_FRAME.size, 64)
+                raw, ancillary, _, _ = self._socket.recvmsg(_FRAME.size, 64)
             except BlockingIOError:
                 return frames
             except OSError:  # a network that is down: hosts see that themselves
                 return frames
             identifier, length, data = _FRAME.unpack(raw)
             if not identifier & _FLAGS:
-                frames.append((_stamp(told), identifier, data[:length]))
+                frames.append((_stamp(ancillary), identifier, data[:length]))
 
     def give(self, block: FrameBlock) -> None:
         """Frames of the bench."""
@@ -110,8 +110,8 @@ class SocketcanPort:
                 continue
 
 
-def _stamp(told: list[tuple[int, int, bytes]]) -> float | None:
-    for level, kind, data in told:
+def _stamp(ancillary: list[tuple[int, int, bytes]]) -> float | None:
+    for level, kind, data in ancillary:
         if (level, kind) == (socket.SOL_SOCKET, _TIMESTAMPNS) and len(data) >= _STAMP.size:
             seconds, nanoseconds = _STAMP.unpack_from(data)
             return float(seconds + 1e-9 * nanoseconds)

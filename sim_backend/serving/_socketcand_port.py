@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, FrameBlock
+from sim_backend.datagrams import LOOPBACK
 
-_LOOPBACK = "127.0.0.1"
 _READ = 65536
 _MOST_WAITING = 1 << 20  # bytes
 _LONGEST_ORDER = 200
@@ -32,7 +32,7 @@ class SocketcandPort:
     """
 
     def __init__(self, port: int, name: str) -> None:
-        self._listening = socket.create_server((_LOOPBACK, port))
+        self._listening = socket.create_server((LOOPBACK, port))
         self._listening.setblocking(False)
         self._name = name
         self._hosts: list[_Host] = []
@@ -42,7 +42,7 @@ class SocketcandPort:
     def table(self) -> dict[str, Any]:
         """What a bench file says to reach it."""
         port = self._listening.getsockname()[1]
-        options = {"host": _LOOPBACK, "port": port, "tcp_tune": True}
+        options = {"host": LOOPBACK, "port": port, "tcp_tune": True}
         return {"interface": "socketcand", "channel": self._name, "options": options}
 
     @property

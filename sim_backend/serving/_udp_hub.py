@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from hil.core.frames import SENT_BY_HOST, FrameBlock
+from hil.core.can.frames import SENT_BY_HOST, FrameBlock
 from sim_backend.datagrams import LARGEST, LOOPBACK, Incoming, Kind, Outgoing, Welcome, kind_of, signal
 
 _SILENT_S = 5.0  # hosts say hello every half a second; one that does not has left without a word, or is busy

@@ -47,7 +47,7 @@ PROOFS = _proofs()
 def objections(recording: Recording, segment: Segment) -> dict[str, str]:
     """Channels that were not measured in a segment, each with the reason; empty where all were.
 
-    A relation in which two channels contradict each other counts against both: nobody knows which of them
+    A relation in which two channels contradict each other counts against both: no one knows which of them
     is wrong.
     """
     found = {name: str(frozen) for name, frozen in frozen_channels(recording, segment).items()}

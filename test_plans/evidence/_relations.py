@@ -32,12 +32,16 @@ _LEAST_S = _LEAST_MEANS * _MEAN_S  # looked at: the end, and what came before a 
 
 @dataclass(frozen=True)
 class Means:
-    """Tapered means of each channel and its largest magnitude, gear ratio and radius as far as known."""
+    """Tapered means of each channel and its largest magnitude, gear ratio and radius as far as known.
+
+    `stated_ratio` is a gear ratio that the segment states: not one made of the speeds.
+    """
 
     values: Mapping[str, Array]
     largest: Mapping[str, float]
     gear_ratio: float | None
     rolling_radius_m: float | None
+    stated_ratio: float | None = None
 
     def __getitem__(self, channel: str) -> Array:
         return self.values[channel]
@@ -68,6 +72,7 @@ class Relation:
         beside: what may differ at every value, in the channel's unit: friction, or what the twist of a shaft
             or a tyre makes of a speed.
         least: root mean square of what is expected, in the channel's unit, below which nothing is proven.
+        otherwise: what it may be as well; None: nothing.
     """
 
     channel: str
@@ -79,6 +84,7 @@ class Relation:
     why: str
     shaken: tuple[float, float] | None = None
     beside: float = 0.0
+    otherwise: Callable[[Means], Array | None] | None = None
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -86,7 +92,7 @@ class Relation:
         return (self.channel, *self.against)
 
     def objection(self, means: Means, short: Means) -> str:
-        """How the channel contradicts its neighbours; '' where it agrees, or where nothing can be said.
+        """How the channel contradicts its neighbours; '' where it agrees, or where nothing can be stated.
 
         Args:
             means: over half a second each.
@@ -95,19 +101,29 @@ class Relation:
         pairs = self._pairs(means, self.least)
         if pairs is not None:
             slope = _slope(*pairs)
-            agrees = self._within(slope) or self._differs_by_no_more(*pairs)
+            agrees = self._within(slope) or self._differs_by_no_more(*pairs) or self._is_otherwise(means)
             return "" if agrees else self._in_words(slope, self.within)
         pairs = self._pairs(short, _SHORT_LEAST * self.least)
         if pairs is None or self.shaken is None:
             return ""
         slope = _slope(*pairs)
-        return "" if self.shaken[0] <= slope <= self.shaken[1] else self._in_words(slope, self.shaken)
+        agrees = self.shaken[0] <= slope <= self.shaken[1] or self._is_otherwise(short)
+        return "" if agrees else self._in_words(slope, self.shaken)
 
     def proves(self, means: Means, short: Means) -> bool:
-        """Whether anything can be said."""
+        """Whether anything can be stated."""
         if self._pairs(means, self.least) is not None:
             return True
         return self.shaken is not None and self._pairs(short, _SHORT_LEAST * self.least) is not None
+
+    def _is_otherwise(self, means: Means) -> bool:
+        expected = None if self.otherwise is None else self.otherwise(means)
+        if expected is None:
+            return False
+        found = means[self.channel]
+        known = np.isfinite(expected) & np.isfinite(found)
+        moves = bool(np.any(expected[known] != 0.0))
+        return moves and self._within(_slope(expected[known], found[known]))
 
     def _within(self, slope: float) -> bool:
         return self.within[0] <= slope <= self.within[1]
@@ -169,19 +185,30 @@ def _own(channel: str) -> Callable[[Means], Array | None]:
     return lambda means: means[channel]
 
 
+def _by_differential(other: str) -> Callable[[Means], Array | None]:
+    """The speed of a wheel where one slides, or leads round a bend: both in the mean have the gear's."""
+
+    def expected(means: Means) -> Array | None:
+        if means.stated_ratio is None or _MOTOR_SPEED not in means:
+            return None
+        return 2.0 * means[_MOTOR_SPEED] / means.stated_ratio - means[other]
+
+    return expected
+
+
 def _rolling(means: Means) -> Array | None:
     radius_m = means.rolling_radius_m
     return None if radius_m is None else means["wheel_speed_rad_s"] * radius_m
 
 
-_REQUEST = "motor_torque_ref_nm"
+_REQUEST, _MOTOR_SPEED = "motor_torque_ref_nm", "motor_speed_rad_s"
 _SPEED, _SIDES, _TORQUE, _SLIP = (0.95, 1.05), (0.8, 1.25), (0.8, 1.2), (0.8, 1.2)
 _LEAST_SPEED_RAD_S, _LEAST_SPEED_M_S, _LEAST_TORQUE_NM = 0.1, 0.05, 20.0
 _TWISTS_RAD_S = 0.4  # a shaft that twists by 0.1 rad within a mean, and comes back in the next
 
 _SENSOR = "a sensor is dead, scaled or mirrored"
 
-#: Sides first: what they tell explains what is told of both.
+#: Sides first: what they show explains what both show.
 RELATIONS = (
     Relation(
         "wheel_speed_left_rad_s",
@@ -192,6 +219,7 @@ RELATIONS = (
         _LEAST_SPEED_RAD_S,
         why=_SENSOR,
         shaken=(0.8, 1.25),
+        otherwise=_by_differential("wheel_speed_right_rad_s"),
     ),
     *(
         Relation(
@@ -308,7 +336,8 @@ def _means_of(rows: Mapping[str, Array], length: int, segment: Segment) -> Means
         for name, values in blocks.items()
     }
     means = {name: _means(values, length) for name, values in blocks.items()}
-    return Means(means, largest, segment.gear_ratio or _ratio_of_speeds(means), segment.rolling_radius_m)
+    ratio = segment.gear_ratio
+    return Means(means, largest, ratio or _ratio_of_speeds(means), segment.rolling_radius_m, ratio)
 
 
 def _ratio_of_speeds(means: Mapping[str, Array]) -> float | None:

@@ -1,4 +1,4 @@
-"""Values that repeat bit for bit although their own noise or a neighbour moves: nobody measures there.
+"""Values that repeat bit for bit although their own noise or a neighbour moves: no one measures there.
 
 The last digits of a measured value change from sample to sample, unless its resolution is coarser than its
 noise and nothing moves. Two things show that a live channel could not have stood still:
@@ -19,9 +19,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hil.core.compiled import compiled
 from hil.core.recording import Recording
 from hil.core.result import Segment
+from hil.core.runtime.compiled import compiled
 from test_plans.conductor import Array
 
 #: A channel with noise that repeats for longer than this is frozen, and one whose witness moves, s.

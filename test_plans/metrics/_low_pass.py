@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from hil.core.compiled import compiled
+from hil.core.runtime.compiled import compiled
 from test_plans.conductor import Array
 
 ORDER = 2

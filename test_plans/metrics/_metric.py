@@ -9,9 +9,9 @@ from typing import Annotated, ClassVar
 from pydantic import AfterValidator, Field
 
 from hil.core.channels import CHANNELS, TIME
+from hil.core.errors.wording import did_you_mean
 from hil.core.recording import Recording
 from hil.core.result import Segment
-from hil.core.suggestion import did_you_mean
 from test_plans.building import Strict
 from test_plans.conductor import PlannedSegment
 

@@ -78,7 +78,7 @@ class Excitation(Step):
             for name in names
         )
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         """Release the dynos if the load is the vehicle, then play."""
         if self.load == "vehicle":
             conductor.release_vehicle()

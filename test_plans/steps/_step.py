@@ -46,12 +46,12 @@ class Step(Strict, ABC):
         return not type(self).__module__.startswith("test_plans.")
 
     @abstractmethod
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         """Do it on the bench; returns when done."""
 
     @abstractmethod
     def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:
-        """Estimated duration and the vehicle speed afterwards, when begun at `speed_m_s`."""
+        """Estimated duration and the vehicle speed afterwards, when started at `speed_m_s`."""
 
     def segments(self) -> tuple[PlannedSegment, ...]:
         """The segments that the step will produce, in order."""
@@ -63,10 +63,10 @@ class Step(Strict, ABC):
 
     @property
     def count(self) -> int:
-        """How many steps are carried out."""
+        """How many steps are executed."""
         return 1
 
     @property
     def duration_s(self) -> float:
-        """Estimated duration in seconds, begun at standstill on a bench of default pace."""
+        """Estimated duration in seconds, started at standstill on a bench of default pace."""
         return self.outlook(0.0, Pace()).duration_s

@@ -17,7 +17,7 @@ class Coast(Step):
     kind: ClassVar[str] = "coast"
     coast_s: Seconds = Field(alias="duration_s", description="time without torque, s")
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         """Coast."""
         conductor.coast(self.coast_s)
 

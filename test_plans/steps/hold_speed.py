@@ -18,7 +18,7 @@ class HoldSpeed(Step):
     speed_km_h: float = Field(ge=-100, le=400, description="vehicle speed, km/h, from -100 to 400")
     hold_s: Seconds = Field(alias="duration_s", description="time at the speed, after the ramp to it, s")
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         """Ramp and hold."""
         conductor.hold_speed(self.speed_km_h / 3.6, self.hold_s)
 

@@ -23,10 +23,10 @@ class OperatorPrompt(Step):
         description="time for an answer, s; without one the run ends; default: 600",
     )
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         """Ask."""
         conductor.prompt(self.text, self.timeout_s)
 
-    def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:  # noqa: ARG002 - nobody knows
+    def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:  # noqa: ARG002 - no one knows
         """People take as long as they take: counted as none."""
         return Outlook(0.0, speed_m_s)

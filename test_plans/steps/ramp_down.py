@@ -17,7 +17,7 @@ class RampDown(Step):
     kind: ClassVar[str] = "ramp_down"
     down_s: Duration = Field(alias="duration_s", description="duration of the ramp to rest, s, at least 0.1")
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         """Ramp down."""
         conductor.ramp_down(self.down_s)
 

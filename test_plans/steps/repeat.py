@@ -39,13 +39,13 @@ class Repeat(Step):
         """The segments of all passes."""
         return tuple(segment for step in self._passes() for segment in step.segments())
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         """Pass after pass."""
         for step in self._passes():
-            step.carry_out(conductor)
+            step.execute(conductor)
 
     def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:
-        """Sum over the passes, each begun at the speed that the one before left."""
+        """Sum over the passes, each started at the speed that the one before left."""
         total = 0.0
         for _ in range(self.times):
             for step in self.steps:

@@ -60,7 +60,7 @@ class SetController(Step):
         """It does."""
         return True
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         """Hand the file over."""
         conductor.set_controller(self.file or designed_file(str(self.designed)))
 

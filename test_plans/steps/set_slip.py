@@ -23,7 +23,7 @@ class SetSlip(Step):
         description="slip between wheels and vehicle, %, from 0 to 50",
     )
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         """Write it."""
         conductor.set_slip(self.slip_percent / 100.0)
 

@@ -34,7 +34,7 @@ class SetVehicle(Step):
         slip = None if self.slip_percent is None else self.slip_percent / 100.0
         return VehicleAndRoad(self.mass_kg, self.f0_n, self.f1_ns_m, self.f2_ns2_m2, slip)
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         """Write it."""
         conductor.set_vehicle(self._vehicle())
 

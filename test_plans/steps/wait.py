@@ -17,7 +17,7 @@ class Wait(Step):
     kind: ClassVar[str] = "wait"
     wait_s: Seconds = Field(alias="duration_s", description="time to wait, s")
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         """Wait."""
         conductor.wait(self.wait_s)
 

@@ -13,7 +13,7 @@ from tests.bad_inputs.api_bounds import table_of, try_routes
 from tests.bad_inputs.case import BOUNDS, Case
 from tests.bad_inputs.inputs import make_inputs
 from tests.bad_inputs.page import BOUNDS_PAGE, PAGE, Tried, bounds_page_of, failures_of, page_of
-from tests.bad_inputs.trying import carry_out
+from tests.bad_inputs.trying import execute
 
 AT_ONCE = 2
 
@@ -24,7 +24,7 @@ def try_all(cases: list[Case], place: Path) -> list[Tried]:
 
     def one(numbered: tuple[int, Case]) -> Tried:
         number, case = numbered
-        tried = case, carry_out(case, place / "inputs", place / f"case-{number}")
+        tried = case, execute(case, place / "inputs", place / f"case-{number}")
         for line in failures_of([tried]):
             print(line, flush=True)
         return tried

@@ -19,7 +19,7 @@ _RESULTS = {
     "replay": "recording.mcap",
     "compare": "comparison.json",
     "explain": "targets.json",
-    "campaign": "begun.json",
+    "campaign": "started.json",
 }
 
 _ODD_NAMES = (

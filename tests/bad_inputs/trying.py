@@ -25,7 +25,7 @@ _LARGEST_HASHED = 1 << 28
 _LONGEST_OUTPUT = 2_000_000
 
 
-def carry_out(case: Case, inputs: Path, folder: Path) -> Outcome:
+def execute(case: Case, inputs: Path, folder: Path) -> Outcome:
     """Try a case in `folder`, which is removed afterwards."""
     work = folder / "work"
     copy_inputs(inputs, work)

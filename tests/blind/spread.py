@@ -17,7 +17,7 @@ from typing import Any
 import psutil
 
 import hil
-from hil.campaign import Batch, Carriers, Here, Progress, carry_out
+from hil.campaign import Batch, Carriers, Here, Progress, execute
 from hil.core.files import make_directory, write_atomically
 from hil.engine import StopRequest
 from tests.blind.diagnosing import Diagnose
@@ -135,7 +135,7 @@ def spread(
         carriers = held.enter_context(_carriers(asked, jobs, scheduler))
         held.callback(lambda: begun.extend(psutil.Process().children(recursive=True)))
         held.enter_context(stop.telling(_at_once(stop)))
-        carry_out(files, carriers, asked.failed, show=tell, stopped=lambda: stop.times > 0)
+        execute(files, carriers, asked.failed, show=tell, stopped=lambda: stop.times > 0)
     return [score for number in range(len(asked.specs)) if (score := files.score(number)) is not None]
 
 

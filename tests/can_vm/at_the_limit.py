@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from drivers import BusHealth, CanSettings, Wire, open_can
-from hil.core.clock import WallClock
-from hil.core.frames import SENT_BY_HOST, FrameBlock
+from hil.core.can.frames import SENT_BY_HOST, FrameBlock
 from hil.core.recording import RecordingWriter, read_frames
+from hil.core.runtime.clock import WallClock
 
 FRAME_ID = 0x5A5
 _LOOK_S = 0.01

@@ -67,7 +67,7 @@ def carried_out(bench: BenchFile, steps: str, out: Path, criteria: str = "[]") -
 
 
 def test_candump_sees_the_devices_at_their_pace(served: BenchFile) -> None:
-    time.sleep(5.0)  # it has just begun, and catches up
+    time.sleep(5.0)  # it has just started, and catches up
     command = ["candump", "-t", "a", "-n", "1500", "simcan0"]
     shown = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120).stdout
     frames = re.findall(r"\(([\d.]+)\)\s+simcan0\s+([0-9A-F]+)", shown)

@@ -1,4 +1,4 @@
-"""Every command line of the documents is a command line; and carried out, it does what the page says.
+"""Every command line of the documents is a command line; and executed, it does what the page says.
 
 The files that a page speaks of are there under its names, but short: `acceptance` and `identification` in the
 folder of the test stand for the built-in plans.
@@ -51,13 +51,13 @@ finally: [ramp_down: {{duration_s: 0.5}}]
 SEQUENCE = "name: mine\nidentify: identification\naccept: acceptance\nrounds: 1\nruns: 1\nstarts: 0\n"
 TARGETS = '[targets]\n"gain_0kmh.peak_shaft_torque" = 300.0\n'
 SEGMENTS = '{"segments": [{"id": "gain_0kmh", "start_s": 1.0, "step_s": 1.5, "end_s": 2.5}]}'
-#: Without end, or with a question: ended by Ctrl-C, or answered by nobody.
+#: Without end, or with a question: ended by Ctrl-C, or answered by no one.
 ENDLESS = ("bench monitor", "bench sim")
 #: What an exit code other than 0 says of the simulated stand-ins.
 CODES = {
     ("explain",): (0, 1),
     ("campaign",): (0, 1),  # its pass share is not reached by every controller
-    ("evidence verify",): (0, 1),  # nobody has signed yet
+    ("evidence verify",): (0, 1),  # no one has signed yet
     ("replay",): (0, 1),  # segments of one of two criteria
     ("report",): (0, 1),  # of a run that crashed: it never passes
     ("bench monitor",): (0, 2, 130),  # a simulated bench has nothing to monitor
@@ -199,11 +199,11 @@ def test_the_commands_of_a_page_work_one_after_the_other(page, stage, served):
         elif name == "bench agent":
             assert _interrupted(line.arguments) == 130
         else:
-            _carry_out(name, arguments)
+            _execute(name, arguments)
         print(f"{time.monotonic() - began:6.1f} s  {line}")
 
 
-def _carry_out(name: str, arguments: list[str]) -> None:
+def _execute(name: str, arguments: list[str]) -> None:
     done = subprocess.run(
         [HIL, *name.split(), *arguments],
         capture_output=True,

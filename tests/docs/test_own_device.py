@@ -167,7 +167,7 @@ def test_a_mistake_in_its_code_leaves_a_traceback_and_everybody_else_safe(
     (said,) = events(outcome, "safe_state")
     if where in ("beat", "troubles"):
         assert said == "confirmed by RMCU, dynos and oil"
-    else:  # and nobody but the oil unit is complained of
+    else:  # and no one but the oil unit is complained of
         expected = "oil did not confirm its safe state within 1 s(: ZeroDivisionError: in a device)?"
         assert re.fullmatch(expected, said)
 

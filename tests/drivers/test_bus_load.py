@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drivers import bits_on_the_wire, most_bits_on_the_wire
-from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, FRAME
 
 
 def written_down(frame_id, extended, data):

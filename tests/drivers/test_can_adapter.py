@@ -29,7 +29,7 @@ NEED_SOFTWARE = {
 def test_an_interface_without_its_driver_is_told_in_one_message(interface):
     port = socket.create_server(("127.0.0.1", 0))
     address = {"host": "127.0.0.1", "port": port.getsockname()[1]}
-    port.close()  # nobody listens there now
+    port.close()  # no one listens there now
     options = address if interface == "socketcand" else {}
     channel: Any = 0 if interface in ("kvaser", "ixxat", "cantact", "canalystii") else "none7"
     with pytest.raises(BenchError) as caught:

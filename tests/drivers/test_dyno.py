@@ -5,8 +5,8 @@ import pytest
 
 from drivers import BusLoop, DynoDriver, DynoNodes, VehicleParameters, Wire
 from drivers.dyno import identifiers_of, read_dyno
+from hil.core.can.frames import FRAME
 from hil.core.errors import BadInputError, BenchError
-from hil.core.frames import FRAME
 from sim_backend.bench import Fault
 from sim_backend.can_interface import SimulatedBus, attached
 from tests.benches_for_tests import SIM, running

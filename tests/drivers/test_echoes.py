@@ -8,8 +8,8 @@ import numpy as np
 
 from drivers import CanSettings, Wire, open_can
 from drivers.echoes import Echoes
-from hil.core.clock import WallClock
-from hil.core.frames import FRAME, SENT_BY_HOST
+from hil.core.can.frames import FRAME, SENT_BY_HOST
+from hil.core.runtime.clock import WallClock
 from sim_backend.serving import UdpHub
 from tests.transports.far_ends import Served, looked_after
 

@@ -1,4 +1,4 @@
-"""The loop serves whatever gives bytes, and one that fails keeps nobody else from being served."""
+"""The loop serves whatever gives bytes, and one that fails keeps no one else from being served."""
 
 from __future__ import annotations
 

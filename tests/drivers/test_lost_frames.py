@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from hil.core.can.frames import FrameBlock
 from hil.core.controller import load_controller
 from hil.core.errors import BenchError
-from hil.core.frames import FrameBlock
 from sim_backend.bench import DYNO_BUS, RMCU_BUS, Fault
 from sim_backend.can_interface import attached
 from test_plans import load_plan
@@ -147,4 +147,4 @@ def test_a_command_by_pdo_that_is_lost_comes_again_with_the_heartbeat() -> None:
         assert bench.dyno.left.wheel_speed_rad_s == pytest.approx(4.0, abs=0.1)
         assert [frame_id for frame_id, _ in wires.sent].count(
             0x203
-        ) == 3  # and no more: nobody sends for ever
+        ) == 3  # and no more: no one sends for ever

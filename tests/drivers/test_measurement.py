@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drivers import Binding, Counting, FrameSource, SampleAssembler, Samples, Stream
-from hil.core.frames import FRAME
-from hil.core.signals import Signal
+from hil.core.can.frames import FRAME
+from hil.core.can.signals import Signal
 
 SIGNAL = Signal("value", 0, 32)
 BINDINGS = [

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drivers import NewestFrames
-from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, frames, joined
-from hil.core.signals import Signal
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, frames, joined
+from hil.core.can.signals import Signal
 
 
 def byte_from(bit: int) -> Signal:

@@ -11,8 +11,8 @@ from hypothesis import assume, event, given, note, settings
 from hypothesis import strategies as st
 
 from drivers import SampleAssembler
+from hil.core.can.frames import FrameBlock
 from hil.core.errors import BenchError
-from hil.core.frames import FrameBlock
 from tests.drivers.wires import (
     BEGIN,
     CONTROL,
@@ -253,7 +253,7 @@ def test_time_that_stood_still_for_all_is_no_loss_of_those_who_count_only_frames
     blocks = [rmcu(n), dyno(n)]
     for block in blocks:
         block["time_s"][block["time_s"] > 5.0 + step * PERIOD_S] += 0.039
-    begun = blocks[1]["time_s"] > 5.0 + (step - before) * PERIOD_S
-    assembler, _ = recorded(blocks[0], blocks[1][begun])
+    started = blocks[1]["time_s"] > 5.0 + (step - before) * PERIOD_S
+    assembler, _ = recorded(blocks[0], blocks[1][started])
     with pytest.raises(BenchError, match=r"(39.0 ms earlier than their number says|moved by 39 ms at once)"):
         assembler.look_for_parted_clocks()

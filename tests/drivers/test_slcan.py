@@ -12,8 +12,8 @@ import pytest
 from drivers import BusHealth, BusLoop, Wire, open_can
 from drivers.linux_errors import remark
 from drivers.slcan import _message
+from hil.core.can.frames import ERROR_FRAME
 from hil.core.errors import BenchError
-from hil.core.frames import ERROR_FRAME
 from tests.clocks import SteppedClock
 from tests.drivers.pseudo_adapter import PseudoAdapter, plugged_in, warnings_in
 

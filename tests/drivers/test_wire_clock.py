@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from drivers import Wire
+from hil.core.can.frames import FrameBlock, frames
 from hil.core.errors import BenchError
-from hil.core.frames import FrameBlock, frames
 from tests.clocks import SteppedClock
 
 
@@ -57,7 +57,7 @@ def test_frames_that_are_late_or_an_own_pause_are_no_jump() -> None:
     for late_s in (0.4, 0.001, 2.0, 0.7, 0.0):  # held up, and in time again
         adapter.late_s = late_s
         assert lag_s(one, clock) == pytest.approx(late_s)
-    clock.sleep_until(clock.now_s() + 2.0)  # nobody looked meanwhile, and the oldest frames were kept
+    clock.sleep_until(clock.now_s() + 2.0)  # no one looked meanwhile, and the oldest frames were kept
     adapter.late_s = 1.9
     assert lag_s(one, clock) == pytest.approx(1.9)
     one.check()

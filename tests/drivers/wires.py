@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from drivers import Binding, CountedBy, FrameSource, SampleAssembler
-from hil.core.frames import FRAME, FrameBlock
-from hil.core.signals import Signal
+from hil.core.can.frames import FRAME, FrameBlock
+from hil.core.can.signals import Signal
 
 PERIOD_S = 1e-3
 VALUE = Signal("Value", 0, 32)

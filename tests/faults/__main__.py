@@ -11,7 +11,7 @@ from tests.faults.expected import FaultRow
 from tests.faults.judging import wrong
 from tests.faults.page import PAGE, page_of
 from tests.faults.table import FAULTS
-from tests.faults.trying import Outcome, carry_out, prepared
+from tests.faults.trying import Outcome, execute, prepared
 
 Cell = tuple[FaultRow, str, Outcome, list[str]]
 
@@ -24,7 +24,7 @@ def try_all(only: str, place: Path) -> list[Cell]:
             if only not in f"{fault.id} / {phase}":
                 continue
             folder = place / f"{fault.id}-{phase}".replace(" ", "-")
-            outcome = carry_out(fault, phase, folder)
+            outcome = execute(fault, phase, folder)
             found = wrong(fault, phase, outcome, folder)
             cells.append((fault, phase, outcome, found))
             for line in found:

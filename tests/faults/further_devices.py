@@ -10,9 +10,9 @@ import numpy as np
 
 from drivers import SerialLine
 from hil.core.ak import BUSY, SYNTAX, UNKNOWN, Answer, Telegrams, request_of
+from hil.core.can.frames import FrameBlock, frames, joined
+from hil.core.can.xcp import ERROR, EVENT, LARGEST_ODT_NUMBER, Code, Happened
 from hil.core.errors import BenchError
-from hil.core.frames import FrameBlock, frames, joined
-from hil.core.xcp import ERROR, EVENT, LARGEST_ODT_NUMBER, Code, Happened
 from sim_backend.rcs import EmulatedPanel
 from tests.faults.stage import Injection, Stage
 

@@ -16,9 +16,9 @@ import can
 import numpy as np
 
 from drivers import read_rmcu
-from hil.core.checksum import crc8_many
-from hil.core.frames import EXTENDED, FrameBlock, empty_block, frames, joined
-from hil.core.signals import Payloads
+from hil.core.can.checksum import crc8_many
+from hil.core.can.frames import EXTENDED, FrameBlock, empty_block, frames, joined
+from hil.core.can.signals import Payloads
 from sim_backend.bench import RMCU_BUS, Fault, SensorFault
 from tests.benches_for_tests import SIM
 from tests.faults.stage import Injection, Stage
@@ -211,7 +211,7 @@ def counted() -> int:
 
 
 def raises(stage: Stage) -> None:
-    raise LookupError("nobody thought of this")
+    raise LookupError("no one thought of this")
 
 
 def stalls(seconds: float) -> Callable[[Stage], None]:
@@ -464,7 +464,7 @@ def garbage(random: np.random.Generator, now_s: float) -> FrameBlock:
 
 
 def sdo_garbage(random: np.random.Generator, now_s: float) -> FrameBlock:
-    """Answers that nobody asked for, of every kind and length."""
+    """Answers that no one asked for, of every kind and length."""
     made = [
         frames(int(random.choice([*_SDO_ANSWERS, _EMCY_LEFT + 0x600, 0x000, 0x703])),
                int(random.integers(0, 1 << 62)), int(random.integers(0, 9)), now_s)

@@ -1,7 +1,7 @@
 """A run on the simulated bench in which one fault is injected in one phase: when, how often, how much torque.
 
 The bench's clock says that it is no virtual one, so that everything goes tick by tick as on hardware; waiting
-takes no time all the same. Torque is read from the plant's own log, not from what hosts were told.
+takes no time all the same. Torque is read from the plant's own log, not from what hosts were reported.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.can.frames import FrameBlock
 from hil.core.conventions import TICK_S
-from hil.core.frames import FrameBlock
 from hil.plant.closed_loop import tick as T
 from sim_backend.bench import RMCU_BUS, SimulatedBench
 from sim_backend.can_interface import prepare
@@ -94,7 +94,7 @@ class Stage:
             self._phase_s.setdefault(phase, self.now_s)
 
     def let_time_pass(self, duration_s: float) -> None:
-        """The run is over: what becomes of the bench that nobody looks after."""
+        """The run is over: what becomes of the bench that no one looks after."""
         if self.world is not None:
             self.world.sleep_until(self.now_s + duration_s)
             self.world.take(RMCU_BUS)

@@ -247,7 +247,7 @@ _OF_WIRES = (
     tolerated("garbage", "garbage on the RMCU's bus", lambda: I.Floods(I.garbage)),
     row(
         "sdo-garbage",
-        "answers and heartbeats that nobody sent",
+        "answers and heartbeats that no one sent",
         lambda: I.Floods(I.sdo_garbage, DYNO_BUS),
         "",
     ),
@@ -283,7 +283,7 @@ _OF_SENSORS = (
         "a wheel's speed is stuck",
         lambda: I.Received(I.stuck(0x183), DYNO_BUS),
         "the wheels turn at|repeats bit for bit",
-        within_s=None,  # until its speed should have changed nobody can know
+        within_s=None,  # until its speed should have changed no one can know
     ),
     row(
         "no-torque",
@@ -337,7 +337,7 @@ _OF_CODE = (
     in_call("troubles", phases=ARMED),
     # It says that it is safe all the same
     in_call("make_safe", phases=ARMED, other=dict.fromkeys(ARMED, GOES_ON)),
-    in_call("is_safe", phases=ALL, safe=UNSAFE, within_s=None),  # nobody asks before the end
+    in_call("is_safe", phases=ALL, safe=UNSAFE, within_s=None),  # no one asks before the end
     in_call("close", phases=ALL, other=dict.fromkeys(ALL, GOES_ON)),  # the bench is safe, the result written
     row(
         "step",

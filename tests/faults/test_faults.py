@@ -12,7 +12,7 @@ from tests.faults.expected import FaultRow, row
 from tests.faults.judging import wrong
 from tests.faults.stage import PHASES, Injection
 from tests.faults.table import FAULTS
-from tests.faults.trying import Outcome, carry_out, prepared
+from tests.faults.trying import Outcome, execute, prepared
 
 CELLS = [(fault, phase) for fault in FAULTS for phase in fault.phases]
 QUICK = {("rmcu-silent", "stepping"), ("dyno-fault", "holding speed"), ("sigterm", "stepping"),
@@ -46,7 +46,7 @@ def _marks(cell: tuple[FaultRow, str]) -> list[pytest.MarkDecorator]:
 def test_a_cell(cell: tuple[FaultRow, str], place: Path) -> None:
     fault, phase = cell
     folder = place / named(cell).replace(" ", "-").replace("/", "in")
-    outcome = carry_out(fault, phase, folder)
+    outcome = execute(fault, phase, folder)
     assert wrong(fault, phase, outcome, folder) == [], outcome.said
 
 
@@ -61,7 +61,7 @@ def test_the_table_is_whole() -> None:
 @pytest.mark.slow
 def test_a_fault_that_is_not_injected_is_wrong(place: Path) -> None:
     nothing = row("nothing", "nothing", Injection)
-    outcome = carry_out(nothing, "stepping", place / "nothing")
+    outcome = execute(nothing, "stepping", place / "nothing")
     assert outcome.injected_s is not None
     assert wrong(nothing, "stepping", outcome, place / "nothing") == ["the fault was not injected"]
 

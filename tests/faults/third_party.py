@@ -38,7 +38,7 @@ class Mark(Step):
     phase: str
     fault: ClassVar[Callable[[], None]] = staticmethod(nothing)
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         if Stage.current.world is None:  # a rehearsal
             return
         Stage.current.enter(self.phase)
@@ -55,7 +55,7 @@ class Ponder(Step):
     kind: ClassVar[str] = "ponder"
     how: str = "well"
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         conductor.analyse("ponder", self._work, ("thoughts.txt",))
 
     def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:

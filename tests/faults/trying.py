@@ -1,4 +1,4 @@
-"""Carries out one cell of the matrix: `hil run` in a process forked for it, which nothing outlives."""
+"""Executes one cell of the matrix: `hil run` in a process forked for it, which nothing outlives."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ def _warm_up(folder: Path) -> None:
     importlib.import_module("hil.app.run")
 
 
-def carry_out(fault: FaultRow, phase: str, folder: Path) -> Outcome:
+def execute(fault: FaultRow, phase: str, folder: Path) -> Outcome:
     """The cell's outcome; whatever goes wrong in it stays in its process."""
     folder.mkdir(parents=True)
     sys.stdout.flush()
@@ -203,7 +203,7 @@ def _carried_out(fault: FaultRow, phase: str, folder: Path, *, reports: bool) ->
 
     folder.mkdir(parents=True, exist_ok=True)
     stage = Stage(phase, fault.make(), REQUEST.id)
-    terminal: Any = importlib.import_module("hil.cli._output").TERMINAL
+    terminal: Any = importlib.import_module("hil.cli.output").TERMINAL
     before = command.write_documents
     terminal.terminal = lambda: Operator(stage)
     if not reports:  # they take longer than all the rest

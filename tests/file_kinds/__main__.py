@@ -17,7 +17,8 @@ _HEAD = """# Kinds of files
 
 What is read, what is said and what is refused, of small files as other tools write them. Made by
 `python -m tests.file_kinds --write`, which reads each; a test holds that the page is what it gives.
-[Recordings of other tools](../how-to/other-tools.md) explains `--columns`; [replay](../how-to/replay.md) logs.
+[Recordings of other tools](../how-to/other-tools.md) explains `--columns`, [replay](../how-to/replay.md)
+logs.
 
 """
 

@@ -1,4 +1,4 @@
-"""Files of earlier versions are still read: a folder for each version, which nobody changes any more.
+"""Files of earlier versions are still read: a folder for each version, which no one changes any more.
 
 They are a run's own: `hil run plan.yaml --bench bench.toml`, and its export. A format that changes gets a
 folder beside these.

@@ -11,11 +11,11 @@ from drivers import BusLoop, Wire, open_can
 from drivers.can_adapter import CanSettings
 from drivers.table import Connections
 from hil.core.ak import Request, Telegrams, answer_of
+from hil.core.can.frames import FRAME
+from hil.core.can.symbol_files import read_symbols
+from hil.core.can.xcp import Command
 from hil.core.errors import BadInputError
-from hil.core.frames import FRAME
 from hil.core.recording import column_map, read_recording
-from hil.core.symbol_files import read_symbols
-from hil.core.xcp import Command
 from hil.engine import load_bench
 from hil.plant.closed_loop import tick as T
 from sim_backend.rcs import EmulatedPanel

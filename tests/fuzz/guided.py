@@ -43,7 +43,7 @@ def main() -> None:
         except HilError as error:
             try:
                 assert error.what, "a message without words"
-                assert len(str(error)) < 5000, "a message that nobody reads"
+                assert len(str(error)) < 5000, "a message that no one reads"
             except AssertionError:
                 keep(data)
                 raise

@@ -12,11 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers import read_rmcu
+from hil.core.can.eds import read_eds
+from hil.core.can.frames import FRAME
 from hil.core.can_logs import read_can_log
 from hil.core.controller import load_controller
-from hil.core.frames import FRAME
 from hil.core.model import load_model
-from hil.core.pdo import read_eds
 from hil.core.recording import Recording, read_recording, recover_recording, write_frames, write_recording
 from hil.engine import RunRequest, load_bench, run_plan
 from test_plans import load_plan

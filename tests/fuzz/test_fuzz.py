@@ -25,7 +25,7 @@ def test_parsers_are_watched_and_what_is_compiled_is_not() -> None:
         "hil.core.recording._mcap_reader",
         "test_plans.loading",
         "hil.engine.bench.bench_file",
-        "hil.core.pdo",
+        "hil.core.can.eds",
     }
     assert not left & watched
 

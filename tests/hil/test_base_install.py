@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from hil.core.extras import MODULES, PURPOSES, not_installed
+from hil.core.errors.extras import MODULES, PURPOSES, not_installed
 
 ROOT = Path(__file__).parents[2]
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]

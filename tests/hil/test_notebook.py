@@ -70,5 +70,5 @@ def test_the_blocks_of_the_page_run_one_after_the_other(
     names: dict[str, object] = {}
     for block in BLOCKS:
         exec(compile(block, "notebook.md", "exec"), names)
-    told = names["told"]
-    assert getattr(told, "verdict") in ("none", "named")  # noqa: B009
+    found = names["diagnosis"]
+    assert getattr(found, "verdict") in ("none", "named")  # noqa: B009

@@ -87,7 +87,7 @@ def wilson(successes: int, trials: int, z: float = 1.96) -> tuple[float, float]:
 
 
 def as_markdown(results: Sequence[Tried], why: Mapping[tuple[str, str, str], str]) -> str:
-    """The whole page; `why` a fault that no test notices is none, or harms nobody: by file, code, fault."""
+    """The whole page; `why` a fault that no test notices is none, or harms no one: by file, code, fault."""
     head = "package", "mutants tried", "there are", "noticed", "timed out", "score, %", "95 % interval"
     lines = [f"| {' | '.join((*head, 's each', 'seed'))} |", "| --- " * 9 + "|"]
     for one in results:

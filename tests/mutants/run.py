@@ -103,7 +103,7 @@ def _write(results: list[Tried], options: argparse.Namespace) -> None:
 
 
 def explained() -> dict[tuple[str, str, str], str]:
-    """Why a fault that no test notices is none, or harms nobody: by file, code, code with the fault."""
+    """Why a fault that no test notices is none, or harms no one: by file, code, code with the fault."""
     table = tomllib.loads(_EXPLAINED.read_text("utf-8"))
     return {(file, one["code"], one["fault"]): one["why"] for file, ones in table.items() for one in ones}
 

@@ -117,12 +117,12 @@ def _waited(pid: int, patience_s: float) -> int | None:
 
 def _feeds_compiled(file: str, source: bytes) -> bool:
     """Whether compiled functions may hold something of a file: they take from their own, and from below."""
-    return file.startswith(_BELOW) or b"hil.core.compiled import" in source
+    return file.startswith(_BELOW) or b"hil.core.runtime.compiled import" in source
 
 
 def _leave_compiled(unseen: Unseen) -> None:
     """Compiled functions stay good though a file that theirs import has changed: the fault is not in them."""
-    from hil.core import compiled
+    from hil.core.runtime import compiled
 
     path, source = unseen
     content = compiled._content

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from tests.process_faults.judging import wrong
-from tests.process_faults.trying import FAULTS, PHASES, ROOT, Fault, Outcome, carry_out, packages
+from tests.process_faults.trying import FAULTS, PHASES, ROOT, Fault, Outcome, execute, packages
 
 PAGE = ROOT / "docs" / "reference" / "process-faults.md"
 MOST_REPEATS = 4
@@ -47,7 +47,7 @@ def try_all(only: str, place: Path) -> tuple[list[Cell], int]:
             if only not in f"{fault.title} / {phase}":
                 continue
             for attempt in range(MOST_REPEATS):
-                outcome = carry_out(fault, phase, place / f"{len(cells)}-{attempt}")
+                outcome = execute(fault, phase, place / f"{len(cells)}-{attempt}")
                 if outcome is not None:
                     break
                 repeats += 1

@@ -24,7 +24,7 @@ class Enter(Step):
     kind: ClassVar[str] = "enter"
     phase: str
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         with Path(f"{self.phase}{ENTERED}".replace(" ", "-")).open("a") as file:
             file.write(f"{time.time()}\n")
 
@@ -38,7 +38,7 @@ class Muse(Step):
     kind: ClassVar[str] = "muse"
     for_s: float
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         conductor.analyse("muse", self._work, ("thoughts.txt",))
 
     def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:

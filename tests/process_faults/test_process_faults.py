@@ -11,7 +11,7 @@ import pytest
 from hil.core.result import RunResult
 from tests.process_faults.__main__ import page_of
 from tests.process_faults.judging import wrong
-from tests.process_faults.trying import FAULTS, PHASES, Outcome, carry_out, packages
+from tests.process_faults.trying import FAULTS, PHASES, Outcome, execute, packages
 
 MOST_REPEATS = 4
 KILLED, FROZEN, COMMAND_KILLED, COMMAND_FROZEN, BENCH_KILLED, _ = FAULTS
@@ -26,7 +26,7 @@ def test_an_analysis_in_the_middle_of_a_run_whose_process_is_killed(tmp_path: Pa
     """At the terminal, with a bench in a third process; what steps is in tests/hil/cli/test_kills.py."""
     with packages(tmp_path):
         for attempt in range(MOST_REPEATS):
-            outcome = carry_out(KILLED, "analysing", tmp_path / str(attempt))
+            outcome = execute(KILLED, "analysing", tmp_path / str(attempt))
             if outcome is not None:
                 break
     assert outcome is not None

@@ -1,4 +1,4 @@
-"""Carries out one cell: three processes in real time, one of which is killed or frozen in one phase."""
+"""Executes one cell: three processes in real time, one of which is killed or frozen in one phase."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ class Outcome:
 
 
 class Watched(Operator):
-    """A command at a terminal that is read all the time: nobody waits for the operator's eyes."""
+    """A command at a terminal that is read all the time: no one waits for the operator's eyes."""
 
     def __init__(self, folder: Path, text: str, *options: object) -> None:
         super().__init__(folder, text, *options)
@@ -114,7 +114,7 @@ class Watched(Operator):
             thread.start()
 
     def _read(self) -> None:
-        with contextlib.suppress(OSError):  # nobody has the terminal open any more
+        with contextlib.suppress(OSError):  # no one has the terminal open any more
             while data := os.read(self._own, 4096):
                 self.seen += data.decode(errors="replace")
         os.close(self._own)
@@ -144,7 +144,7 @@ def packages(place: Path) -> Iterator[None]:
         yield
 
 
-def carry_out(fault: Fault, phase: str, folder: Path) -> Outcome | None:
+def execute(fault: Fault, phase: str, folder: Path) -> Outcome | None:
     """The cell's outcome; None if the run did not come as far as its phase, or its disk stood still.
 
     What is missing was measured, and not written: a disk that keeps another file waiting as long is no
@@ -211,7 +211,7 @@ def _hit(
 
 
 def _begun(phase: str, folder: Path, dynos: Observer) -> Callable[[], bool]:
-    """Whether a phase has begun."""
+    """Whether a phase has started."""
     if phase == "opening":
         return lambda: True
     if phase == "arming":

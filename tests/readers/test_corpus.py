@@ -16,12 +16,12 @@ import can
 import numpy as np
 import pytest
 
+from hil.core.can.dbc_messages import keys_of
 from hil.core.can_logs import CanLog, read_can_log
-from hil.core.dbc_messages import keys_of
 from hil.core.errors import BadInputError
-from hil.core.mdf_file import open_mdf
 from hil.core.recording import Recording
 from hil.core.recording._mdf import read_mdf
+from hil.core.recording.mdf_file import open_mdf
 from hil.engine.replay._counts import counted
 from tests.readers import tools
 

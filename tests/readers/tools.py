@@ -1,4 +1,4 @@
-"""Tools of others, installed by name into a folder of their own; nobody needs them to use the project."""
+"""Tools of others, installed by name into a folder of their own; no one needs them to use the project."""
 
 from __future__ import annotations
 

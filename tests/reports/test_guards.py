@@ -28,10 +28,10 @@ def test_what_was_reached_beside_what_is_allowed(result: RunResult) -> None:
 
 def test_holds_and_end_steps(recording: Recording, result: RunResult) -> None:
     held = Hold(start_s=3.0, end_s=5.5, cause="cage_shut reached 0 1", ended_by="well again")
-    named = result.model_copy(update={"holds": (held,), "end_steps": "carried out: ramp_down"})
+    named = result.model_copy(update={"holds": (held,), "end_steps": "executed: ramp_down"})
     first, last = hold_facts(named)
     assert first.name.replace("\u202f", " ") == "3.0 s to 5.5 s"
     assert first.value == "held: cage_shut reached 0 1; ended by: well again"
-    assert last.value == "carried out: ramp_down"
+    assert last.value == "executed: ramp_down"
     assert content(recording, named).holds == (first, last)
     assert (limit_facts(None), hold_facts(None)) == ((), ())

@@ -73,7 +73,7 @@ def test_a_run_in_which_nothing_is_judged_is_not_green(recording: Recording, res
     free = {"upper": None, "lower": None, "below": "", "verdict": "informational"}
     informational = [criterion.model_copy(update=free) for criterion in result.criteria]
     banner = content(recording, result.model_copy(update={"criteria": tuple(informational)})).banner
-    assert (banner.tone, banner.headline) == ("unjudged", "Carried out, nothing judged")
+    assert (banner.tone, banner.headline) == ("unjudged", "Executed, nothing judged")
     assert content(recording, result.model_copy(update={"criteria": ()})).banner.tone == "unjudged"
 
 

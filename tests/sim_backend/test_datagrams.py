@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hil.core.frames import FRAME
+from hil.core.can.frames import FRAME
 from sim_backend.datagrams import Incoming, Kind, Outgoing, Welcome, address_of, kind_of, signal, welcome_of
 
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from drivers import Wire
+from hil.core.can.frames import FRAME
 from hil.core.errors import BenchError
-from hil.core.frames import FRAME
 from sim_backend.serving import UdpHub
 from sim_backend.udp_interface import LoopbackBus
 from tests.clocks import SteppedClock

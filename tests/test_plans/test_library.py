@@ -38,7 +38,7 @@ def test_acceptance_on_a_conductor() -> None:
     conductor = NoteTaker()
     plan = load_plan("acceptance")
     for step in (*plan.steps, *plan.finally_):
-        step.carry_out(conductor)
+        step.execute(conductor)
     third = conductor.calls[8:12]
     assert third[0][0] == "set_controller"
     assert third[1] == ("hold_speed", pytest.approx(20 / 3.6), 2.0)
@@ -55,7 +55,7 @@ def test_acceptance_on_a_conductor() -> None:
 def test_identification_covers_its_band_and_the_biased_chirp_never_reverses() -> None:
     conductor = NoteTaker()
     for step in load_plan("identification").steps:
-        step.carry_out(conductor)
+        step.execute(conductor)
     torque = {segment.id: samples for _, samples, segment in conductor.played if segment}
     assert torque["chirp_high"].max() == pytest.approx(20, rel=1e-3)
     assert torque["chirp_low"].max() == pytest.approx(10, rel=1e-3)

@@ -236,7 +236,7 @@ def test_driving_torque_before_any_controller_is_refused_where_it_stands(
     steps: str, end: str, line: str
 ) -> None:
     with pytest.raises(BadInputError, match="requests driving torque before any set_controller") as caught:
-        plan_from_text(f"name: x\nsteps: {steps}\nfinally: {end}\n", "p.yaml", Path(), to_carry_out=True)
+        plan_from_text(f"name: x\nsteps: {steps}\nfinally: {end}\n", "p.yaml", Path(), to_execute=True)
     assert line in caught.value.where
     assert "set_controller: {file:" in caught.value.fix
 
@@ -250,7 +250,7 @@ def test_driving_torque_before_any_controller_is_refused_where_it_stands(
     ],
 )
 def test_a_controller_that_comes_before_is_enough(steps: str) -> None:
-    assert plan_from_text(f"name: x\nsteps: {steps}\n", "p.yaml", Path(), to_carry_out=True).steps
+    assert plan_from_text(f"name: x\nsteps: {steps}\n", "p.yaml", Path(), to_execute=True).steps
 
 
 def test_a_plan_has_no_more_steps_than_repeat_allows() -> None:

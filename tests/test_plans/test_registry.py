@@ -19,7 +19,7 @@ class Honk(Step):
     kind: ClassVar[str] = "honk"
     times: int
 
-    def carry_out(self, conductor):
+    def execute(self, conductor):
         conductor.prompt("honk " * self.times)
 
     def outlook(self, speed_m_s, pace):
@@ -44,7 +44,7 @@ def horn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_step_of_another_package() -> None:
     plan = plan_from_text("name: p\nsteps: [honk: {times: 2}]", "p.yaml", Path())
     conductor = NoteTaker()
-    plan.steps[0].carry_out(conductor)
+    plan.steps[0].execute(conductor)
     assert conductor.calls == [("prompt", "honk honk ")]
     with pytest.raises(BadInputError, match="did you mean 'times'"):
         plan_from_text("name: p\nsteps: [honk: {tims: 2}]", "p.yaml", Path())

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from drivers import BusHealth, Wire, open_can
-from hil.core.clock import WallClock
+from hil.core.can.frames import EXTENDED, SENT_BY_HOST, empty_block, joined
 from hil.core.errors import BenchError
-from hil.core.frames import EXTENDED, SENT_BY_HOST, empty_block, joined
+from hil.core.runtime.clock import WallClock
 from tests.transports.far_ends import FAR_ENDS, block_of, looked_after
 
 _LOOKS = 2000

@@ -12,7 +12,7 @@ import can
 import numpy as np
 
 from drivers import CanSettings
-from hil.core.frames import EXTENDED, FRAME, FrameBlock
+from hil.core.can.frames import EXTENDED, FRAME, FrameBlock
 from hil.core.model import load_model
 from sim_backend.bench import SimulatedBench, SimulationSettings
 from sim_backend.can_interface import attach, detach

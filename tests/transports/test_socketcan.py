@@ -13,9 +13,9 @@ import can
 import pytest
 
 from drivers import BusHealth, BusLoop, CanSettings, Wire, open_can
-from hil.core.clock import WallClock
+from hil.core.can.frames import EXTENDED, FrameBlock
 from hil.core.errors import BenchError
-from hil.core.frames import EXTENDED, FrameBlock
+from hil.core.runtime.clock import WallClock
 from tests.can_vm.interfaces import ip, plugged_in, unplugged, up
 from tests.transports import contract, far_ends
 
@@ -60,7 +60,7 @@ def _known(monkeypatch):
 class TestSocketcan(contract.TransportContract):
     interface = "socketcan"
     keeps_stamps = False  # the kernel stamps what arrives
-    tells_that_the_other_end_left = False  # that nobody acknowledges frames is told by error frames
+    tells_that_the_other_end_left = False  # that no one acknowledges frames is told by error frames
 
     def test_where_nobody_is_nothing_is_opened(self):
         with pytest.raises(BenchError, match="cannot be opened: .*No such device"):
@@ -116,7 +116,7 @@ def test_a_network_that_is_down_is_told(loop):
 
 @pytest.mark.skipif(NEAR.startswith("vcan"), reason="no bus of its own")
 def test_a_bus_on_which_nobody_acknowledges_is_told(loop):
-    """Only with real controllers: emulated ones acknowledge themselves; then nothing is told."""
+    """Only with real controllers: emulated ones acknowledge themselves; then nothing is reported."""
     ip(FAR, "down")
     try:
         for _ in range(50):

@@ -11,9 +11,9 @@ from pydantic import Field
 from hil.analysis.campaigns._axes import MOST_SIMULATIONS, Span, refuse_too_many, spans_at
 from hil.analysis.tuning import Tolerance
 from hil.core.errors import BadInputError
-from hil.core.file_format import FORMAT, FormatNumber
+from hil.core.errors.wording import did_you_mean
 from hil.core.files import is_file
-from hil.core.suggestion import did_you_mean
+from hil.core.files.kinds import FORMAT, FormatNumber
 from test_plans.building import Strict, brief, build, mapping_at
 from test_plans.loading import LIBRARY
 from test_plans.mistakes import PlanMistakes

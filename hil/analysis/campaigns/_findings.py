@@ -16,7 +16,7 @@ Array = npt.NDArray[np.float64]
 
 CONFIDENCE = 0.95
 _WORST = 10
-_FEWEST = 5  # simulations from which a rank correlation is told
+_FEWEST = 5  # simulations from which a rank correlation is reported
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class OfCriterion:
 
     Attributes:
         values: those that there are, in the metric's unit; limits: of `below` the other segment's differ.
-        share: of simulations that were carried out.
+        share: of simulations that were executed.
         correlations: of the value with each input by column, Spearman's ρ; NaN where it has none.
     """
 
@@ -120,12 +120,12 @@ def findings_of(table: pd.DataFrame, criteria: Sequence[Criterion], inputs: dict
     """Evaluate the table of a campaign (docs/reference/campaigns.md)."""
     names = list(dict.fromkeys(table["controller"]))
     varied = {name: unit for name, unit in inputs.items() if table[name].nunique() > 1}
-    told = table.loc[table["error"].notna(), "error"].value_counts()
+    reasons = table.loc[table["error"].notna(), "error"].value_counts()
     return Findings(
         len(table),
         varied,
         tuple(_of_controller(name, table[table["controller"] == name], criteria, varied) for name in names),
-        {str(words): int(count) for words, count in told.items()},
+        {str(words): int(count) for words, count in reasons.items()},
         float(table["processor_s"].sum()),
     )
 

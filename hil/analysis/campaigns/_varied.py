@@ -9,8 +9,8 @@ from hil.analysis.campaigns._file import CampaignFile
 from hil.analysis.tuning import ALTERNATIVES, PARAMETERS
 from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import did_you_mean
 from hil.core.model import EffectUse, Model, model_from_dict, parameter_unit
-from hil.core.suggestion import did_you_mean
 from test_plans import Plan
 from test_plans.mistakes import PlanMistakes
 

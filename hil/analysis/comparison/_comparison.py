@@ -63,7 +63,7 @@ class ResponseRow:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Runs of one plan; everything is told against the first."""
+    """Runs of one plan; everything is reported against the first."""
 
     runs: tuple[ComparedRun, ...]
     criteria: tuple[CriterionRow, ...]

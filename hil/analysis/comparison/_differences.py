@@ -10,7 +10,7 @@ import yaml
 
 from hil.analysis.comparison._runs import CONTROLLERS, PLAN, ComparedRun, loaded_in_turn
 from hil.core.errors import BadInputError
-from hil.core.toml_file import parse_toml
+from hil.core.files.toml_file import parse_toml
 
 Kind = Literal["controller", "model", "bench", "plan"]
 _NOTHING = "–"
@@ -75,7 +75,7 @@ def _table(run: ComparedRun, name: str) -> dict[str, str]:
 def _flat(value: Any, path: str) -> Iterator[tuple[str, str]]:
     if isinstance(value, dict) and (value or not path):
         for key, one in value.items():
-            if key != "set_controller":  # told by what is in their files
+            if key != "set_controller":  # compared by what is in their files
                 yield from _flat(one, f"{path}.{key}" if path else str(key))
     elif isinstance(value, list) and any(isinstance(one, dict) for one in value):
         for index, one in enumerate(value):

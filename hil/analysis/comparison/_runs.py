@@ -1,4 +1,4 @@
-"""Which runs can be compared: those that carried out the same plan."""
+"""Which runs can be compared: those that executed the same plan."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def _loaded(value: object) -> Iterator[str]:
 
 
 def _without_files(value: object) -> object:
-    """Steps whichever controllers they load: those are told apart by what is in them."""
+    """Steps whichever controllers they load: those are distinguished by what is in them."""
     if isinstance(value, dict):
         return {
             key: {**one, _FILE: ""}

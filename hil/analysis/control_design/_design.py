@@ -53,7 +53,7 @@ def design(
     Args:
         model: the plant.
         spec: what is asked for.
-        progress: told what is being done.
+        progress: called with what is being done.
         unstable_too: hand out an unstable loop as well, for comparisons; never load its controller.
 
     Raises:

@@ -39,7 +39,7 @@ _POINTS = 1500
 
 @dataclass(frozen=True)
 class Draft:
-    """A controller on the model itself; nothing is said of other plants (`design` does).
+    """A controller on the model itself; nothing is stated of other plants (`design` does).
 
     Attributes:
         controller: as `design` would make it.

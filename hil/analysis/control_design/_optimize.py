@@ -76,7 +76,7 @@ def optimize(
         limits: what all plants must keep.
         objective: 'max' or 'rms'.
         origin_poles: poles of the open loop at the origin.
-        progress: told what is being done.
+        progress: called with what is being done.
 
     Raises:
         BadInputError: nothing keeps the limits.

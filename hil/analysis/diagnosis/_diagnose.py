@@ -37,6 +37,7 @@ from hil.analysis.plausible import refuse_same_data, within_floating_point
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
 from hil.plant import gear_ratio_of
+from hil.plant.sides import refuse_separate
 
 Array = npt.NDArray[np.float64]
 
@@ -75,6 +76,7 @@ def diagnose(
         BadInputError: the recordings cannot belong to the model (inverted, swapped, dead, clipped, wrong
             gear ratio, values that no axle gives), hold the same data twice, or have no output of the model.
     """
+    refuse_separate(model, "a diagnosis")
     refuse_same_data(recordings, holdout)
     stated = stated_noise([*recordings, *holdout])
     asked = Asked.checked({**stated, **(noise or {})}, least or {}, at_most_s)

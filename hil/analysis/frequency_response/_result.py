@@ -49,7 +49,7 @@ class FrequencyResponse:
             realisations, from stochastic nonlinear distortion).
         noise: O x F, output noise as a one-sided amplitude density, output unit/√Hz.
         nonlinear: O x F, the part of `standard_deviation` that repeats with the input (stochastic
-            nonlinear distortion); zeros where it cannot be told apart.
+            nonlinear distortion); zeros where it cannot be distinguished.
         independent_every: neighbours share data; every `independent_every`-th value is independent.
         method: how it was estimated.
         notes: what was mended, merged or left out.

@@ -15,10 +15,10 @@ from hil.analysis.identification._chain_fit import (
     choose_chain,
     fit_chain,
 )
-from hil.analysis.identification._fit import Fit, expected_deviation, fit
 from hil.analysis.identification._identify import Identification, identify
 from hil.analysis.identification._modal import Modes, Structure
 from hil.analysis.identification._order import ORDERS, Candidate, OrderChoice, choose_order
+from hil.analysis.identification._rational_fit import Fit, expected_deviation, fit
 from hil.analysis.identification._table import fit_of, model_of, stated_errors
 from hil.analysis.identification._trust import (
     LARGEST_DISTORTION,

@@ -11,8 +11,8 @@ import numpy.typing as npt
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.analysis.identification._chain import CHAINS, chain_response
 from hil.core.channels import OUTPUTS
-from hil.core.digits import share
 from hil.core.errors import BadInputError
+from hil.core.errors.digits import share
 from hil.core.model import Model, parameter_names
 
 Array = npt.NDArray[np.float64]
@@ -136,7 +136,7 @@ def choose_chain(
         gear_ratio: known gear ratio; estimated when None.
         torque_delay_s: known dead time; estimated when None. A chain that is too simple abuses the dead
             time to make up for the poles that it lacks, so the one of a rational fit is the better guess.
-        progress: told what is being done.
+        progress: called with what is being done.
     """
     fits = []
     for kind in CHAINS:

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from hil.analysis.frequency_response import Experiment, FrequencyResponse, Method, estimate
 from hil.analysis.identification._chain_fit import ChainChoice, choose_chain
-from hil.analysis.identification._fit import Fit
+from hil.analysis.identification._channel_skew import in_step, moments_of, timings_of
 from hil.analysis.identification._mistakes import refuse_mistakes
 from hil.analysis.identification._order import ORDERS, OrderChoice, choose_order
+from hil.analysis.identification._rational_fit import Fit
 from hil.analysis.identification._table import model_of
-from hil.analysis.identification._timing import in_step, moments_of, timings_of
 from hil.analysis.identification._trust import Judgement, Trust, judge
 from hil.analysis.plausible import within_floating_point
 from hil.core.channels import OUTPUTS
@@ -70,7 +70,7 @@ def identify(
         method: see `estimate`.
         order: order of the denominator; None lets the data choose.
         gear_ratio: known gear ratio of the chain.
-        progress: told what is being done.
+        progress: called with what is being done.
 
     Raises:
         UnfitDataError: the data cannot give a frequency response.

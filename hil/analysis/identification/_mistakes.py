@@ -100,26 +100,26 @@ def _near(one: float, other: float, factor: float = _APART) -> bool:
     return 1.0 / factor < one / other < factor
 
 
-def _apart(speeds: float, torques: float, said: str) -> tuple[str, str] | None:
+def _apart(speeds: float, torques: float, observed: str) -> tuple[str, str] | None:
     """Names the mistake that brings both ways to the gear ratio together, if one does."""
     if speeds < _RATIOS[0] and _near(1.0 / speeds, torques):
-        return f"{_MOTOR} and {_WHEEL} look swapped: {said}", "exchange the two columns"
+        return f"{_MOTOR} and {_WHEEL} look swapped: {observed}", "exchange the two columns"
     for channel, ratio in ((_MOTOR, speeds / _RPM), (_WHEEL, speeds * _RPM)):
         if _near(ratio, torques, _LIKE_RPM) and _USUAL_RATIO <= torques <= _RATIOS[1]:
-            return f"{channel} looks like rpm: {said}", _TO_RAD_S
+            return f"{channel} looks like rpm: {observed}", _TO_RAD_S
     for channel, ratio in ((_SHAFT, torques * _KILO), (INPUT, torques / _KILO)):
         if _near(ratio, speeds):
-            return f"{channel} looks like kN m: {said}", _TO_NM
+            return f"{channel} looks like kN m: {observed}", _TO_NM
     return None
 
 
-def _alone(speeds: float, said: str) -> tuple[str, str]:
+def _alone(speeds: float, observed: str) -> tuple[str, str]:
     """Names a ratio of speeds that no gear has."""
     if speeds > _RATIOS[1]:
-        return f"{_MOTOR} looks like rpm: {said}, no axle's gear has that", _TO_RAD_S
+        return f"{_MOTOR} looks like rpm: {observed}, no axle's gear has that", _TO_RAD_S
     if speeds * _RPM > _USUAL_RATIO:
-        return f"{_WHEEL} looks like rpm: {said}, no axle's gear has that", _TO_RAD_S
-    return f"{_MOTOR} and {_WHEEL} look swapped: {said}", "exchange the two columns"
+        return f"{_WHEEL} looks like rpm: {observed}, no axle's gear has that", _TO_RAD_S
+    return f"{_MOTOR} and {_WHEEL} look swapped: {observed}", "exchange the two columns"
 
 
 def _wrong_sign(

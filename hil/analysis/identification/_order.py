@@ -11,7 +11,7 @@ import numpy.typing as npt
 from scipy import special
 
 from hil.analysis.frequency_response import FrequencyResponse
-from hil.analysis.identification._fit import Fit, expected_deviation, fit
+from hil.analysis.identification._rational_fit import Fit, expected_deviation, fit
 from hil.core.errors import BadInputError
 
 logger = logging.getLogger(__name__)

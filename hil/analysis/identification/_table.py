@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from hil.analysis.identification._fit import Fit
 from hil.analysis.identification._modal import Modes, Structure
+from hil.analysis.identification._rational_fit import Fit
 from hil.core.effects import finite_number
 from hil.core.errors import BadInputError
 from hil.core.model import Model, TransferFunction

@@ -13,11 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.frequency_response import FrequencyResponse, check_coherence
-from hil.analysis.identification._fit import Fit, expected_deviation, fit
 from hil.analysis.identification._order import Candidate
+from hil.analysis.identification._rational_fit import Fit, expected_deviation, fit
 from hil.core.conventions import COMFORT_BAND_HZ
-from hil.core.digits import share
 from hil.core.errors import BadInputError
+from hil.core.errors.digits import share
 
 Array = npt.NDArray[np.float64]
 Trust = Literal["linear", "doubtful"]
@@ -28,7 +28,7 @@ LARGEST_MISFIT = 0.05
 LARGEST_EXCESS = 0.25
 #: Level at lines that the input leaves out, relative to the linear response around them, median.
 LARGEST_DISTORTION = 0.05
-#: Median coherence of a record that does not repeat: below, noise and distortion cannot be told apart.
+#: Median coherence of a record that does not repeat: below, noise and distortion cannot be distinguished.
 LEAST_COHERENCE = 0.97
 #: Below it, inside the comfort band, less than half of an output's power there comes from the input.
 UNSEEN_COHERENCE = 0.5
@@ -51,7 +51,7 @@ class Judgement:
         misfit: by output, rms relative to the response beyond noise (median over frequency), 0 to 1.
         distortion: by output, relative to the linear response; None where the input shows none.
         coherence: by output, median over frequency.
-        unseen: where in the comfort band the outputs hardly answer the input, for people: nobody knows there
+        unseen: where in the comfort band the outputs hardly answer the input, for people: no one knows there
             whether standard errors hold.
     """
 

@@ -12,6 +12,7 @@ from hil.analysis.frequency_response import experiments_of
 from hil.analysis.identification import identify
 from hil.analysis.target_search._targets import ResponseTarget, Targets
 from hil.analysis.target_search._trial import (
+    BAND_HZ,
     SETTLED_SHARE,
     SETTLED_UNTIL_S,
     Guess,
@@ -24,7 +25,6 @@ from hil.core.errors import HilError
 from hil.core.recording import RUN
 from hil.core.result import RunResult
 
-_BAND_HZ = (0.05, 30.0)
 _FREQUENCIES = 400
 
 
@@ -90,7 +90,7 @@ def _settling(outcome: Outcome, targets: Targets) -> Iterator[Condition]:
 
 def _response(guess: Guess, trial: Trial, wanted: ResponseTarget) -> Iterator[Condition]:
     """What `hil identify` finds on this bench, against the functions that a real one gave."""
-    frequency = np.geomspace(*_BAND_HZ, _FREQUENCIES)
+    frequency = np.geomspace(*BAND_HZ, _FREQUENCIES)
     try:
         found = trial.run(wanted.plan, guess)
         run = RunResult(

@@ -15,10 +15,10 @@ from hil.analysis.target_search._separating import Separating, separating
 from hil.analysis.target_search._targets import Targets
 from hil.analysis.target_search._trial import CarryOut, Guess, Outcome, Trial, guess_at
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import did_you_mean
 from hil.core.model import Model, model_to_toml
-from hil.core.suggestion import did_you_mean
 
-#: Rivals that are told.
+#: Rivals that are reported.
 RIVALS = 4
 #: Guesses of each that are tried on all conditions until one holds them.
 _CHECKED = 24
@@ -117,7 +117,7 @@ def _shaft_torque_nm(trial: Trial) -> float:
 
 def explain(
     base: Model,
-    carry_out: CarryOut,
+    execute: CarryOut,
     targets: Targets,
     *,
     evaluations: int,
@@ -126,7 +126,7 @@ def explain(
     show: Callable[[str, float | None], None] = lambda text, share: None,
     stopped: Callable[[], bool] = lambda: False,
 ) -> Explanation:
-    """Search for what brings the predicted run to the targets; `carry_out` predicts runs.
+    """Search for what brings the predicted run to the targets; `execute` predicts runs.
 
     Only candidates `among` are looked at, all if there are none.
 
@@ -134,7 +134,7 @@ def explain(
         BadInputError: a base model that carries no effect, no candidate of a name, or a plan that cannot be
             predicted or brings no torque.
     """
-    trial = Trial(base, carry_out, targets)
+    trial = Trial(base, execute, targets)
     every = candidates(base, _shaft_torque_nm(trial), targets.open)
     if not every:
         raise BadInputError(
@@ -146,7 +146,7 @@ def explain(
             raise BadInputError(f"there is no candidate '{name}'", fix=did_you_mean(name, known))
     every = tuple(known[name] for name in dict.fromkeys(among)) or every
     search = Search(trial, evaluations, seed, show, stopped)
-    search.carry_out(every)
+    search.execute(every)
     show("checking the best", None)
     rivals = [_of_set(search.places(found.chosen, _CHECKED), trial) for found in search.best[:RIVALS]]
     rivals.sort(key=lambda rival: (len(rival.missed), rival.cost))

@@ -50,7 +50,7 @@ class _StoppedError(Exception):
 
 
 class Search:
-    """Guesses carried out so far; `best` has the best of each set."""
+    """Guesses executed so far; `best` has the best of each set."""
 
     def __init__(
         self,
@@ -83,7 +83,7 @@ class Search:
                 break
         return kept
 
-    def carry_out(self, every: Set) -> None:
+    def execute(self, every: Set) -> None:
         """Search; ends early when somebody asks to stop, and keeps what is known."""
         try:
             self._alone(every)

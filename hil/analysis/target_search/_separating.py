@@ -17,8 +17,8 @@ import yaml
 
 from hil.analysis.target_search._trial import Guess, Predicted, Trial
 from hil.core.channels import unit_of
-from hil.core.digits import quantity
 from hil.core.errors import HilError
+from hil.core.errors.digits import quantity
 from test_plans import Plan, plan_from_text
 from test_plans.steps import SetController
 
@@ -47,7 +47,7 @@ class Separating:
 
 
 def separating(one: Guess, two: Guess, trial: Trial, names: tuple[str, str]) -> Separating | None:
-    """The best of the plans; None if neither can be carried out on both guesses."""
+    """The best of the plans; None if neither can be executed on both guesses."""
     best: Separating | None = None
     for words, steps in _plans(trial.targets.plan):
         plan, text = _plan(steps, words, names)

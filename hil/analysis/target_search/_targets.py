@@ -11,10 +11,10 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import did_you_mean
+from hil.core.files.shipped import shipped_file
+from hil.core.files.toml_file import parse_toml, toml_text
 from hil.core.model import Model, load_model
-from hil.core.shipped import shipped_file
-from hil.core.suggestion import did_you_mean
-from hil.core.toml_file import parse_toml, toml_text
 from test_plans import Plan, load_plan
 
 Range = tuple[float, float]
@@ -66,7 +66,7 @@ class Targets:
         values: criterion id: figure, in the criterion's unit.
         first_seconds: the figures must be reached within these seconds after the step; None: any time.
         settles: segment: seconds after which T_s stays within 5 % of the step around its mean, until 4 s.
-        open: RMCU parameter: range, for numbers of the controller that nobody has given.
+        open: RMCU parameter: range, for numbers of the controller that no one has given.
         response: None: no identification is asked for.
     """
 

@@ -1,4 +1,4 @@
-"""One guess at what an axle is, carried out on the predicted bench, and what comes of it."""
+"""One guess at what an axle is, executed on the predicted bench, and what comes of it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from test_plans import Plan, judge
 SETTLED_UNTIL_S = 4.0
 SETTLED_SHARE = 0.05
 _SHAFT_TORQUE = "shaft_torque_nm"
-_BAND_HZ = (0.05, 30.0)
+BAND_HZ = (0.05, 30.0)
 _FREQUENCIES = 200
 _NO_FIGURES = 1e4  # cost of a guess that gives none, and the most of any: five times a figure
 _MISSED = 10.0  # slope of the cost of a condition that is missed, five times that of one that just holds
@@ -82,7 +82,7 @@ class Outcome:
         ratios: of each criterion that compares two segments: value over the value that it must be below.
         unsettled: by segment, largest deviation of T_s from its mean over the step's size.
         misfit: by output, rms over frequency of the linear response against the target's, dB and degrees.
-        prediction: None where the guess could not be carried out.
+        prediction: None where the guess could not be executed.
     """
 
     figures: Mapping[str, float | None]
@@ -124,8 +124,8 @@ def _cost(share: float) -> float:
 class Trial:
     """Carries guesses out; of the plan's criteria, only those that are asked for are judged."""
 
-    def __init__(self, base: Model, carry_out: CarryOut, targets: Targets) -> None:
-        self.base, self.targets, self._carry_out = base, targets, carry_out
+    def __init__(self, base: Model, execute: CarryOut, targets: Targets) -> None:
+        self.base, self.targets, self._execute = base, targets, execute
         wanted = [c for c in targets.plan.criteria if c.id in targets.values or c.below]
         self.plan = targets.plan.model_copy(update={"criteria": tuple(wanted)})
 
@@ -140,12 +140,12 @@ class Trial:
         return self._outcome(found, model)
 
     def run(self, plan: Plan, guess: Guess) -> Predicted:
-        """A plan carried out on a guess.
+        """A plan executed on a guess.
 
         Raises:
             HilError: the run would fail.
         """
-        return self._carry_out(plan, guess.model(self.base), guess.held)
+        return self._execute(plan, guess.model(self.base), guess.held)
 
     def _outcome(self, found: Predicted, model: Model) -> Outcome:
         criteria = judge(self.plan, found.recording, found.segments, measured=False, device=False)
@@ -177,7 +177,7 @@ class Trial:
         wanted = self.targets.response
         if wanted is None:
             return {}
-        frequency = np.geomspace(*_BAND_HZ, _FREQUENCIES)
+        frequency = np.geomspace(*BAND_HZ, _FREQUENCIES)
         response = linear_system(model).response(frequency)
         return {
             name: rms_misfit(response[OUTPUTS.index(name)], wanted.functions, name, frequency)

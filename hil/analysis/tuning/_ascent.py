@@ -56,7 +56,7 @@ class Ascent:
     def __init__(self, tried_on: TriedOn, criteria: Sequence[str], limits: Sequence[str]) -> None:
         self._tried_on, self._criteria, self._limits = tried_on, criteria, limits
 
-    def carry_out(self, start: Array, radius: float, least_radius: float, rounds: int) -> None:
+    def execute(self, start: Array, radius: float, least_radius: float, rounds: int) -> None:
         """From `start` until steps are shorter than `least_radius`.
 
         A round tries one candidate for each free parameter, and one for each of two radii.

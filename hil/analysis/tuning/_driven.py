@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hil.core.errors import BadInputError
-from hil.core.suggestion import did_you_mean
+from hil.core.errors.wording import did_you_mean
 from hil.core.vehicle import VehicleAndRoad
 from test_plans import PROMPT_TIMEOUT_S, Array, Criterion, Plan, PlannedSegment, Quantity, Work
 
@@ -28,7 +28,7 @@ def driven_by(plan: Plan, name: str = "") -> Driven:
     """
     walk = _Walk()
     for step in plan.steps:
-        step.carry_out(walk)
+        step.execute(walk)
     files = list(dict.fromkeys(file for file in walk.driver.values() if file.is_absolute()))
     if not files:
         raise BadInputError(

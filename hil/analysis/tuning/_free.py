@@ -10,11 +10,11 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from hil.analysis.tuning._parameters import ALTERNATIVES, PARAMETERS
 from hil.core.errors import BadInputError
-from hil.core.mistakes import Mistake, keyed, refuse
+from hil.core.errors.mistakes import Mistake, keyed, refuse
+from hil.core.errors.table_mistakes import mistakes_of
+from hil.core.errors.wording import did_you_mean
+from hil.core.files.toml_file import parse_toml, toml_text
 from hil.core.model import MODEL_KINDS
-from hil.core.suggestion import did_you_mean
-from hil.core.table_mistakes import mistakes_of
-from hil.core.toml_file import parse_toml, toml_text
 from test_plans import Plan
 
 Bounds = Annotated[tuple[float, float], Field(strict=False)]  # a list of TOML; its numbers are numbers

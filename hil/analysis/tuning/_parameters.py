@@ -56,21 +56,21 @@ ALTERNATIVES = (
     (("pole_rad_s",), ("proportional_gain", "integral_gain")),
 )
 #: A lead or a notch that the start has not: the paper's.
-_PAPER_LEAD = {"lead_deg": 36.0, "lead_hz": 40.0}
-_PAPER_NOTCH = {"notch_hz": 10.6, "notch_width": 2.0, "notch_depth": 0.08}
+PAPER_LEAD = {"lead_deg": 36.0, "lead_hz": 40.0}
+PAPER_NOTCH = {"notch_hz": 10.6, "notch_width": 2.0, "notch_depth": 0.08}
 
 
 def values_of(controller: Controller) -> dict[str, float]:
     """Every number that can be tuned, as a controller has it; a lead or notch it lacks is the paper's."""
     wsc, dfc = controller.wsc, controller.dfc
-    found = dict(_PAPER_LEAD)
+    found = dict(PAPER_LEAD)
     if wsc.lead is not None:
         alpha = wsc.lead.alpha
         found = {
             "lead_deg": math.degrees(math.asin((1 - alpha) / (1 + alpha))),
             "lead_hz": 1 / (2 * math.pi * math.sqrt(alpha) * wsc.lead.time_constant_s),
         }
-    notch = dict(_PAPER_NOTCH)
+    notch = dict(PAPER_NOTCH)
     if wsc.notch is not None:
         notch = {
             "notch_hz": wsc.notch.frequency_hz,
@@ -124,7 +124,7 @@ def _speed_control(controller: Controller, values: Mapping[str, float], all_: Ma
     if "lead_deg" in values or "lead_hz" in values:
         normalisation = part.normalisation if part is not None else "high_frequency"
         part, notch = lead(all_["lead_deg"], all_["lead_hz"], normalisation), None
-    elif any(name in values for name in _PAPER_NOTCH):
+    elif any(name in values for name in PAPER_NOTCH):
         part = None
         notch = Notch(frequency_hz=all_["notch_hz"], width=all_["notch_width"], depth=all_["notch_depth"])
     return wsc.model_copy(

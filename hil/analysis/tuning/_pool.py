@@ -13,7 +13,7 @@ from types import TracebackType
 
 from hil.analysis.tuning._trial import Trial, Tried
 from hil.core.conventions import ENDING_SIGNALS
-from hil.core.other_process import end_with_parent
+from hil.core.runtime.other_process import end_with_parent
 
 Work = tuple[Mapping[str, float], int]
 _trial: Trial | None = None  # of this process, where it is one of a pool's
@@ -55,7 +55,7 @@ class Pool:
         ask()
         found: list[Tried] = []
         with contextlib.closing(self._results(work)) as results:
-            for one in results:  # those that are not begun are taken back where `ask` raises
+            for one in results:  # those that are not started are taken back where `ask` raises
                 self.runs += 1
                 found.append(one)
                 if len(found) < len(work):

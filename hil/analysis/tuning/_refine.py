@@ -21,7 +21,7 @@ from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._trial import Trial, Tried
 from hil.analysis.tuning._trust_step import Promise, TrustStep
 from hil.core.controller import Controller
-from hil.core.digits import share as percent
+from hil.core.errors.digits import share as percent
 from hil.core.result import CriterionResult
 
 Array = npt.NDArray[np.float64]
@@ -127,7 +127,7 @@ def refine(
     """
     with Pool(trial, processes) as pool:
         step = TrustStep(pool, space, start, stopped)
-        return _Refining(trial, space, bench, budget or RefinementBudget(), step, show, stopped).carry_out(
+        return _Refining(trial, space, bench, budget or RefinementBudget(), step, show, stopped).execute(
             start
         )
 
@@ -151,7 +151,7 @@ class _Refining:
         self._best = 0
         self._radius, self._in_vain = FIRST_RADIUS, 0
 
-    def carry_out(self, start: Array) -> Refinement:
+    def execute(self, start: Array) -> Refinement:
         names = [criterion.id for criterion in self._trial.driven.criteria]
         nothing = Correction(start, np.zeros(len(names)), np.zeros((len(names), start.size)))
         first = self._step.promise(start, nothing)

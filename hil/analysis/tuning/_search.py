@@ -18,7 +18,8 @@ from hil.analysis.tuning._ascent import Ascent, scatter, score
 from hil.analysis.tuning._parameters import Space
 from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._trial import Tried
-from hil.core.digits import share
+from hil.analysis.tuning._trust_step import SAME
+from hil.core.errors.digits import share
 
 Array = npt.NDArray[np.float64]
 
@@ -27,7 +28,6 @@ _SHORTEST = 1e-3  # step that ends it
 _SCATTERED = 10  # points for each that is gone uphill from
 _AT_ONCE = 32  # points all over the space between two words about how far it is
 _FAR_SHARE = 0.3  # of the time, when there are draws
-_SAME = 1e-4  # of scores: less than this is no difference
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Search:
         start: point to begin with.
         seed: of everything random.
         stopped: asked before each batch.
-        show: told what is being done, and how much of it is done.
+        show: called with what is being done, and how much of it is done.
     """
 
     def __init__(
@@ -86,7 +86,7 @@ class Search:
         self._joined: tuple[Array, list[Tried]] | None = None  # best of those that were tried on every car
         self.ended = "converged"
 
-    def carry_out(self) -> None:
+    def execute(self) -> None:
         """Search; ends early when somebody asks to stop, and keeps what is known."""
         try:
             hills = self._far()
@@ -166,7 +166,7 @@ class Search:
 
         limits = self._pool.trial.limits
         criteria = [criterion.id for criterion in self._pool.trial.driven.criteria]
-        Ascent(tried_on, criteria, limits).carry_out(start, radius, _SHORTEST, rounds)
+        Ascent(tried_on, criteria, limits).execute(start, radius, _SHORTEST, rounds)
         return best[0]
 
     def _join(self) -> bool:
@@ -179,7 +179,7 @@ class Search:
         active = list(self._active)
         while len(active) < len(self._active) + self._effort.joining:
             known = [found[number] for number in active]
-            if score(known) < whole + _SAME:
+            if score(known) < whole + SAME:
                 break
             lowered = [score([*known, one]) for one in found]
             active.append(int(np.argmin(lowered)))

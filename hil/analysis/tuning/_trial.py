@@ -115,7 +115,7 @@ class Trial:
     start: Controller
     draws: tuple[Draw, ...]
     loops: SpeedLoops
-    carry_out: CarryOut
+    execute: CarryOut
     _known: dict[int, Mapping[str, float]] = field(default_factory=dict, repr=False, compare=False)
 
     def controller(self, values: Mapping[str, float], name: str = "tuned") -> Controller:
@@ -135,7 +135,7 @@ class Trial:
         if not loop.stable or min(limits.values(), default=0.0) < 0.0:
             return Tried(values, number, loop, limits)
         try:
-            found = self.carry_out(draw.model, controller, draw.noise, draw.seed)
+            found = self.execute(draw.model, controller, draw.noise, draw.seed)
         except HilError as error:
             return Tried(values, number, loop, limits, trouble=str(error))
         limits |= self._run_limits(found)

@@ -18,7 +18,7 @@ Array = npt.NDArray[np.float64]
 
 _ROUNDS = 6
 _CHECKED = 5  # of the candidates that promise most, on every car
-_SAME = 1e-4  # of margins: less than this is no difference
+SAME = 1e-4  # of margins: less than this is no difference
 _RADIUS, _SHORTEST = 0.5, 0.02  # of the first and of the last step of an ascent, shares of the region's width
 
 
@@ -64,7 +64,7 @@ class TrustStep:
         criteria = [criterion.id for criterion in trial.driven.criteria]
         ascent = Ascent(tried_on, criteria, trial.limits)
         try:
-            ascent.carry_out((centre.point - low) / (high - low), _RADIUS, _SHORTEST, _ROUNDS)
+            ascent.execute((centre.point - low) / (high - low), _RADIUS, _SHORTEST, _ROUNDS)
         except _StoppedError:
             return centre
         better = [one for one in seen if one.corrected.score > centre.corrected.score]
@@ -86,7 +86,7 @@ class TrustStep:
     def _on_every_car(self, one: Promise) -> bool:
         """Whether it keeps the hard limits on the others, too, and no worse there than the start."""
         tried = self._on_others(one.point)
-        return all(car.feasible and car.worst >= self._least - _SAME for car in tried)
+        return all(car.feasible and car.worst >= self._least - SAME for car in tried)
 
     def _on_others(self, point: Array) -> list[Tried]:
         """A candidate on every car but the model itself."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.tuning._parameters import Space, values_of
+from hil.analysis.tuning._parameters import PAPER_LEAD, PAPER_NOTCH, Space, values_of
 from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._search import Effort, Search
 from hil.analysis.tuning._trial import Trial, Tried
@@ -21,8 +21,6 @@ Array = npt.NDArray[np.float64]
 
 #: Step of the sensitivities, as a share of a parameter's range.
 SENSITIVITY_STEP = 0.02
-_PAPER_LEAD = {"lead_deg": 36.0, "lead_hz": 40.0}
-_PAPER_NOTCH = {"notch_hz": 10.6, "notch_width": 2.0, "notch_depth": 0.08}
 
 
 @dataclass(frozen=True)
@@ -113,7 +111,7 @@ def tune(
         search = Search(
             pool, space, space.point(values_of(trial.start)), seed, effort or Effort(), show, stopped
         )
-        search.carry_out()
+        search.execute()
         show("comparing", None)
         if search.ended == "stopped":
             trial, chosen, start = _stopped(pool, search, space)
@@ -239,8 +237,8 @@ def _paper(trial: Trial) -> dict[str, Mapping[str, float]]:
     wsc, own = trial.start.wsc, values_of(trial.start)
     found: dict[str, Mapping[str, float]] = {}
     for name, part, numbers in (
-        ("paper's lead", wsc.lead, _PAPER_LEAD),
-        ("paper's notch", wsc.notch, _PAPER_NOTCH),
+        ("paper's lead", wsc.lead, PAPER_LEAD),
+        ("paper's notch", wsc.notch, PAPER_NOTCH),
     ):
         same = part is not None and all(np.isclose(own[n], v, rtol=1e-3) for n, v in numbers.items())
         if not same:

@@ -15,7 +15,7 @@ from hil.app.result_file import Outcome, json_file
 from hil.app.results_folder import ResultsFolder, results_in
 from hil.app.run import RunSettings
 from hil.app.tuning.bench_runs import Allowed, predicted_run
-from hil.app.tuning.search import Search
+from hil.app.tuning.search_files import Search
 from hil.core.controller import controller_to_toml
 from hil.core.errors import BadInputError
 from hil.core.model import Model
@@ -51,7 +51,7 @@ def autotune(
         report_decision: called with each decision that was taken.
 
     Raises:
-        BadInputError: something cannot be used, a plan leaves the envelope, or nobody consents.
+        BadInputError: something cannot be used, a plan leaves the envelope, or no one consents.
     """
     settings = _settings(request, load_sequence(request.sequence), feedback)
     inputs = settings.runs.inputs
@@ -70,7 +70,7 @@ def autotune(
             report_decision(closing.decisions[-1])
 
         loop = AutotuneLoop(settings, place.folder, closing, keep)
-        code = loop.carry_out()
+        code = loop.execute()
         with feedback.progress("the report"):
             summary = _write(loop, settings, place)
     return Outcome(Autotuned(closing, code), summary, place.folder)

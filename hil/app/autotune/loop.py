@@ -14,9 +14,9 @@ from hil.app.autotune.stages import MODEL, EndedError, LoopSettings, Recorded, S
 from hil.app.interrupts import EXIT_CODE, INTERRUPTS
 from hil.app.tuning.bench_runs import WireBench
 from hil.app.tuning.refinement import Refined
-from hil.app.tuning.search import Search
-from hil.core.digits import share
+from hil.app.tuning.search_files import Search
 from hil.core.errors import HilError
+from hil.core.errors.digits import share
 from hil.engine import RECORDING
 from reports.outputs.autotune import Closing, Decision, Stage, effects_in_words
 from reports.tuning_report import Shown
@@ -38,7 +38,7 @@ class AutotuneLoop:
         self.shown: list[Shown] = []
         self.model = settings.given
 
-    def carry_out(self) -> int:
+    def execute(self) -> int:
         """All stages; the exit code. What ended it stands in `closing`."""
         code = 0
         try:
@@ -58,25 +58,25 @@ class AutotuneLoop:
         return code or int(not self.closing.content)
 
     def _identify(self) -> None:
-        carried = self._stages.run(self._settings.identify, "identify")
-        self._explained.append(Recorded(carried.folder / RECORDING))
-        what = f"{len(carried.segments)} segments recorded"
+        outcome = self._stages.run(self._settings.identify, "identify")
+        self._explained.append(Recorded(outcome.folder / RECORDING))
+        what = f"{len(outcome.segments)} segments recorded"
         why = "varying torque reveals effects that the model lacks"
-        self._decide(0, "identify", what, "diagnose the recording", why, carried.folder)
+        self._decide(0, "identify", what, "diagnose the recording", why, outcome.folder)
 
     def _before(self) -> Confirmation:
         """The plan that accepts as it is: what is to be bettered, and what the given model says of it."""
         trial, closing = self._settings.search.trial, self.closing
-        carried = self._stages.run(trial.plan, "before")
-        found = confirmation(trial.tried({}, 0).criteria, carried.criteria, self._settings.agree)
-        closing.before_margins = trial.margins_of(carried.criteria)
-        self.shown.append(carried.shown("before"))
+        outcome = self._stages.run(trial.plan, "before")
+        found = confirmation(trial.tried({}, 0).criteria, outcome.criteria, self._settings.agree)
+        closing.before_margins = trial.margins_of(outcome.criteria)
+        self.shown.append(outcome.shown("before"))
         what = (
             f"worst margin {share(min(closing.before_margins.values()), 2)}; the given model is {_off(found)}"
         )
         agrees = "agrees" if found.agrees else "does not agree"
         why = f"it {agrees} within {share(found.allowed)}; recordings with excitation show what is missing"
-        self._decide(0, "before", what, "diagnose", why, carried.folder)
+        self._decide(0, "before", what, "diagnose", why, outcome.folder)
         return found
 
     def _round(self, number: int, before: Confirmation) -> None:

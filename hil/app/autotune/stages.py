@@ -18,9 +18,9 @@ from hil.app.results_folder import results_in
 from hil.app.run import RunSettings
 from hil.app.tuning.bench_runs import FOLDER, Allowed, StageOutcome, WireBench
 from hil.app.tuning.refinement import Refined, refine_on
-from hil.app.tuning.search import NAMES as TUNING_NAMES
-from hil.app.tuning.search import SUMMARY as TUNING_SUMMARY
-from hil.app.tuning.search import Search, load_search, write_results
+from hil.app.tuning.search_files import NAMES as TUNING_NAMES
+from hil.app.tuning.search_files import SUMMARY as TUNING_SUMMARY
+from hil.app.tuning.search_files import Search, load_search, write_results
 from hil.core.errors import HilError
 from hil.core.model import load_model
 from hil.core.recording import Recording, read_recording
@@ -101,7 +101,7 @@ class Stages:
         if made is not None:
             self._spent_s += made.bench_time_s
             return StageOutcome(folder, 0, tuple(made.segments), made.criteria)
-        with settings.runs.carry_out(plan, bench, folder) as run:
+        with settings.runs.execute(plan, bench, folder) as run:
             result, code, error = run.result, run.exit_code, run.outcome.error
         self._spent_s += result.bench_time_s
         if code == EXIT_CODE:

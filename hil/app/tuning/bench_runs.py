@@ -29,7 +29,7 @@ FOLDER = "bench"
 
 @dataclass(frozen=True)
 class Allowed:
-    """A bench, what may be done on it, and who said so."""
+    """A bench, what may be done on it, and who consented."""
 
     bench: BenchFile
     envelope: Envelope
@@ -85,7 +85,7 @@ def allowed_on(
         confirm: name of who consents; '' if the person at the terminal is asked.
 
     Raises:
-        BadInputError: the envelope makes no sense or leaves no room, or nobody consents.
+        BadInputError: the envelope makes no sense or leaves no room, or no one consents.
     """
     refuse_nobody(trial.plan, bench, confirm, feedback)
     predicted = predicted_run(trial, model, None)
@@ -158,7 +158,7 @@ class WireBench:
         write_atomically(file, controller_to_toml(controller))
         plan = load_plan(self._plan, Choices({self._name: file}))
         bench = self.allowed.watched(self.earlier_runs + number)
-        with self._settings.carry_out(plan, bench, folder) as run:
+        with self._settings.execute(plan, bench, folder) as run:
             result = run.result
             self.outcomes[number] = StageOutcome(
                 folder, run.exit_code, tuple(result.segments), result.criteria
@@ -182,8 +182,8 @@ class WireBench:
 
 def predicted_run(trial: Trial, model: Model, controller: Controller | None) -> Prediction:
     """A whole run of the trial's plan, with every channel and its peaks; None: the plan's own controller."""
-    assert isinstance(trial.carry_out, BatchPrediction)
-    return trial.carry_out(model, controller, 0.0, 0, whole=True)
+    assert isinstance(trial.execute, BatchPrediction)
+    return trial.execute(model, controller, 0.0, 0, whole=True)
 
 
 def name_in(plan: str, file: Path) -> str:

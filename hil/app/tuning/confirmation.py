@@ -83,7 +83,7 @@ def run_tuned(
     """
     file = found.trial.driven.file
     chosen = load_plan(plan, Choices({name_in(plan, file): place / "controller.toml"}))
-    with wire.settings.carry_out(chosen, wire.bench, place / RUN) as run:
+    with wire.settings.execute(chosen, wire.bench, place / RUN) as run:
         result, exit_code = run.result, run.exit_code
     recording = read_recording(place / RUN / RECORDING, least_samples=0, allow_missing=True)
     confirmed = confirmation(found.chosen.nominal.criteria, result.criteria, wire.allowed)

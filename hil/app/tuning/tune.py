@@ -19,7 +19,7 @@ from hil.app.run import RunSettings
 from hil.app.tuning.bench_runs import FOLDER, Allowed, WireBench, allowed_on
 from hil.app.tuning.confirmation import OnTheWire, Ran, refuse_unasked, run_tuned
 from hil.app.tuning.refinement import Refined, refine_on
-from hil.app.tuning.search import NAMES, SUMMARY, Search, load_search, write_results
+from hil.app.tuning.search_files import NAMES, SUMMARY, Search, load_search, write_results
 from hil.core.errors import BadInputError, InterruptError
 from hil.engine import StopRequest
 
@@ -62,7 +62,7 @@ def tune_controller(
     """Search, and write controller, summary and report; then run and refine as asked for.
 
     Raises:
-        BadInputError: something cannot be used, nobody consents, or no controller keeps the hard limits.
+        BadInputError: something cannot be used, no one consents, or no controller keeps the hard limits.
         InterruptError: it was interrupted before anything worth keeping was found.
     """
     search = load_search(request.search)

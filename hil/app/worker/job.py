@@ -22,7 +22,7 @@ def write_request(folder: Path, request: object) -> None:
     """Leave for the job what is wanted.
 
     Args:
-        request: one of `hil.app.requests` that `carry_out` knows.
+        request: one of `hil.app.requests` that `execute` knows.
 
     Raises:
         HilError: it cannot be written.
@@ -39,7 +39,7 @@ def write_request(folder: Path, request: object) -> None:
 
 
 def main() -> None:
-    """Carry out what is asked for, and exit."""
+    """Execute what is asked for, and exit."""
     INTERRUPTS.raise_from_now_on()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.setdefault("PYTHONWARNINGS", "ignore")
@@ -59,7 +59,7 @@ def _guarded(folder: Path) -> int:
     from hil.app.failures import error_of
 
     try:
-        return _carry_out(folder)
+        return _execute(folder)
     except Exception as error:
         if INTERRUPTS.arrived:
             INTERRUPTS.tell()
@@ -69,7 +69,7 @@ def _guarded(folder: Path) -> int:
         return found.exit_code
 
 
-def _carry_out(folder: Path) -> int:
+def _execute(folder: Path) -> int:
     import json
 
     from pydantic import TypeAdapter

@@ -18,14 +18,13 @@ from typing import TYPE_CHECKING
 
 from hil.app.feedback import LoggedFeedback
 from hil.app.interrupts import INTERRUPTS
+from hil.engine.process.hardware_process import ASKED_WITHIN_S, LAST_WORDS_S
 
 if TYPE_CHECKING:
     from hil.app.feedback import Show
     from hil.engine.ipc.ipc_messages import EmergencyAsked, RunAsked
     from hil.engine.ipc.ipc_pipe import IpcPipe
 
-_ASKED_WITHIN_S = 60.0
-_LAST_WORDS_S = 10.0
 LOG_FILE = "log.txt"
 #: Starts it.
 RUNNER = (sys.executable, "-m", "hil.app.worker.served_run")
@@ -44,7 +43,7 @@ class _Service(LoggedFeedback):
         """The run that is asked for; None if the service is gone before it has asked."""
         from hil.engine.ipc.ipc_messages import RunAsked
 
-        until_s = time.monotonic() + _ASKED_WITHIN_S
+        until_s = time.monotonic() + ASKED_WITHIN_S
         while not self._pipe.gone and time.monotonic() < until_s:
             self._pipe.wait(1.0)
             for message in self._pipe.fetch():
@@ -90,7 +89,7 @@ class _Service(LoggedFeedback):
         logger.warning(text)
 
     def ask_name(self, question: str, given: str) -> str:
-        """Nobody is asked here."""
+        """No one is asked here."""
         del question
         return given
 
@@ -100,10 +99,12 @@ class _Service(LoggedFeedback):
 
 
 def main() -> None:
-    """Carry out the run that is asked for on standard input, and exit with the code that `hil run` has."""
+    """Execute the run that is asked for on standard input, and exit with the code that `hil run` has."""
     INTERRUPTS.raise_from_now_on()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    os.environ.setdefault("PYTHONWARNINGS", "ignore")  # of processes begun by this one; here the log has them
+    os.environ.setdefault(
+        "PYTHONWARNINGS", "ignore"
+    )  # of processes started by this one; here the log has them
     reading, writing = os.dup(0), os.dup(1)
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(2, 1)  # what a library prints is no message
@@ -122,7 +123,7 @@ def main() -> None:
     try:
         request = service.request()
         if request is not None:
-            code = _carry_out(request, service, pipe)
+            code = _execute(request, service, pipe)
     except HilError as error:
         code = error.exit_code
         pipe.send(Refused(error=ErrorData.of(error)))
@@ -134,14 +135,14 @@ def main() -> None:
         fault = BenchError(what, where=LOG_FILE, fix="please report it with the run's log")
         code = fault.exit_code
         pipe.send(Refused(error=ErrorData.of(fault)))
-    pipe.push_all(_LAST_WORDS_S)
+    pipe.push_all(LAST_WORDS_S)
     INTERRUPTS.ignore_from_now_on()
     LOG.end()
     sys.exit(code)
 
 
 def _stop_line() -> IpcPipe | None:
-    """Only read from; nobody else has this end of it."""
+    """Only read from; no one else has this end of it."""
     from hil.engine.ipc.ipc_pipe import IpcPipe
 
     if len(sys.argv) < 3:
@@ -151,7 +152,7 @@ def _stop_line() -> IpcPipe | None:
     return IpcPipe(line, line)
 
 
-def _carry_out(asked: RunAsked, service: _Service, pipe: IpcPipe) -> int:
+def _execute(asked: RunAsked, service: _Service, pipe: IpcPipe) -> int:
     from hil.app.log import LOG
     from hil.app.run import RunSettings
     from hil.engine.ipc.ipc_data import ended_of, request_of
@@ -170,7 +171,7 @@ def _carry_out(asked: RunAsked, service: _Service, pipe: IpcPipe) -> int:
         feedback=service,
         stops=request.stops,
     )
-    with settings.carry_out(request.plan, request.bench, out) as run:
+    with settings.execute(request.plan, request.bench, out) as run:
         outcome = run.outcome
         outcome.result = run.result
         pipe.send(ended_of(outcome))

@@ -1,1 +1,1 @@
-"""The options of each command, one class a command; light, so that --help answers at once."""
+"""What each command does: it asks a use case of hil.app and prints the outcome."""

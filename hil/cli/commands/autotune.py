@@ -1,77 +1,64 @@
-"""`hil autotune`: identify, diagnose, add, tune, confirm, and again."""
+"""`hil autotune`: a sequence of runs and analyses on a bench, until prediction and run agree."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
-import typer
+from hil.app.autotune.autotune import autotune
+from hil.app.interrupts import EXIT_CODE, INTERRUPTS
+from hil.app.requests import AutotuneRequest
+from hil.cli.inputs import bench_or_own, named_numbers, request_of
+from hil.cli.options.controllers import Autotune
+from hil.cli.output import TERMINAL, console, plain_table, print_json
+from hil.core.errors import BadInputError
+from hil.core.errors.digits import share
+from reports import HTML
+from reports.outputs.autotune import Closing, Decision, closing_verdict
 
-from hil.app.worker.lean_imports import import_python_can
-from hil.cli._completion import shipped_model
-from hil.cli.commands._options import BenchName, Operator, OverwriteResult, found_model
 
-SEVERAL = ("--envelope",)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Autotune:
-    """Identify, diagnose, tune and confirm on a bench, in rounds, unattended.
-
-    A sequence file names the plans and the end conditions. Each round identifies the effects that the model
-    lacks and adds them, tunes a controller on the improved model, and confirms and refines it on the bench. A
-    run that deviates from its prediction starts another round. The rounds end when prediction and run agree
-    and the worst margin no longer grows. One consent before the first run covers all runs within an envelope.
-
-    Writes controller.toml (the best one measured), model.toml, autotune.json with every decision and its
-    reason, report.html, report.pdf, and a folder for each stage. Ctrl-C keeps the results so far. Exit code:
-    0 prediction and run agree and every criterion that depends on the controller passes, 1 otherwise, 3 a run
-    failed.
-    """
-
-    model: Annotated[
-        Path,
-        typer.Option(
-            "--model",
-            help="initial model file of the axle (a chain), or the name of a shipped model",
-            callback=found_model,
-            autocompletion=shipped_model(),
-        ),
-    ]
-    sequence: Annotated[str, typer.Argument(help="sequence file, or the name of a shipped one: autotune")] = (
-        "autotune"
+def execute(options: Autotune) -> int:
+    """Execute the command; its exit code."""
+    if options.resume and options.out is None:
+        raise BadInputError(
+            "--resume goes with --out", where="--resume", fix="name the directory to continue with --out"
+        )
+    request = request_of(
+        AutotuneRequest,
+        options,
+        bench=bench_or_own(options.bench, drives=True),
+        envelope=named_numbers(options.envelope or [], "--envelope"),
     )
-    bench: BenchName = ""
-    out: Annotated[Path | None, typer.Option(help="directory for the results; default: out/autotune-NNN")] = (
-        None
-    )
-    envelope: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="CHANNEL=VALUE",
-            help="largest magnitude allowed in a run, or bench_time_s for all runs; default: 1.3 times "
-            "the values predicted for both plans",
-        ),
-    ] = None
-    confirm: Annotated[
-        str,
-        typer.Option(metavar="NAME", help="name of the person who authorises all runs within the envelope"),
-    ] = ""
-    operator: Operator = ""
-    processes: Annotated[
-        int | None, typer.Option(min=1, max=256, help="parallel predictions; default: one per core")
-    ] = None
-    resume: Annotated[
-        bool,
-        typer.Option("--resume", help="continue in --out; keep the runs made there before the first round"),
-    ] = False
-    overwrite: OverwriteResult = False
-    json_: Annotated[bool, typer.Option("--json", help="print autotune.json on stdout, nothing else")] = False
+    outcome = autotune(request, TERMINAL, _print_nothing if options.json_ else _print_decision)
+    if options.json_:
+        print_json(outcome.summary)
+    else:
+        _print(outcome.found.closing, outcome.folder)
+    if outcome.found.exit_code == EXIT_CODE:
+        INTERRUPTS.tell()
+    return outcome.found.exit_code
 
-    def carry_out(self) -> int:
-        """Carry the command out; its exit code."""
-        import_python_can()
-        from hil.cli.autotune import carry_out
 
-        return carry_out(self)
+def _print_nothing(decision: Decision) -> None:
+    del decision
+
+
+def _print_decision(one: Decision) -> None:
+    where = f"round {one.round}, {one.stage}" if one.round else one.stage
+    text = f"{where}: {one.found}\n  {one.decided}: {one.why}"
+    console().print(text, highlight=False, markup=False, soft_wrap=True)
+
+
+def _print(closing: Closing, folder: Path) -> None:
+    page, best = console(), closing.best
+    if best is not None:
+        table = plain_table("\nmargins, of the limits")
+        table.add_column("criterion", no_wrap=True)
+        for name in ("before", "predicted", "measured"):
+            table.add_column(name, justify="right")
+        for name, measured in best.measured.items():
+            before = closing.before_margins.get(name)
+            own = "-" if before is None else share(before)
+            table.add_row(name, own, share(best.predicted.margins[name]), share(measured))
+        page.print(table)
+    text = f"{closing_verdict(closing)}\nreport: {folder / HTML}"
+    page.print(text, highlight=False, markup=False, soft_wrap=True)

@@ -1,59 +1,60 @@
-"""`hil bench agent`: benches of this machine for a bench service elsewhere."""
+"""`hil bench agent`: benches of this machine for a bench service elsewhere, until somebody ends it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Annotated
+import math
+import os
+import socket
+import sys
 
-import typer
+from hil.agent import AgentRequest, work
+from hil.app.interrupts import EXIT_CODE
+from hil.cli.options.benches import BenchAgent
+from hil.cli.output import print_json
+from hil.cli.remote_run import TOKEN
+from hil.core.errors import BadInputError
+from hil.core.errors.wording import printable
+from hil.engine import StopRequest
 
-from hil.app.worker.lean_imports import import_python_can
 
-SEVERAL = ("--bench", "--server")
+def execute(options: BenchAgent) -> int:
+    """Execute the command; its exit code."""
+    server = options.server
+    data = options.data
+    bench = options.bench or ["sim"]
+    name = options.name
+    for_s = options.for_s
+    if for_s is not None and not for_s > 0:
+        raise BadInputError(f"--for is {for_s:g}", fix="give seconds greater than 0, or leave it out")
+    name = name or socket.gethostname()
+    if not name.strip() or not name.isprintable() or len(name) > 100:
+        raise BadInputError(
+            f"'{printable(name)}' is not a valid name",
+            where="--name",
+            fix="use 1 to 100 printable characters",
+        )
+    stop = StopRequest()
 
+    def ready(away: str) -> None:
+        if options.as_json:
+            print_json({"agent": name, "servers": server, "data": str(data.resolve()), "away": away})
+        elif away:
+            print(f"Agent {name} is ready; the service cannot be reached, the agent retries: {away}")
+        else:
+            print(f"Agent {name} works for {server[0]} (Ctrl-C ends it); data directory: {data}")
+        sys.stdout.flush()
 
-@dataclass(frozen=True, kw_only=True)
-class BenchAgent:
-    """Drive benches of this machine for a bench service on another machine.
-
-    The service holds the queue and the page. The agent works until Ctrl-C or SIGTERM; it then ends runs
-    under way with their end steps. When the service is out of reach, a run continues and is uploaded later.
-    HIL_TOKEN holds a token with the role agent. Exit code: 0 the time of --for is over, 2 bad input, 3 the
-    service has another bench of that name, 130 ended by a signal.
-    """
-
-    server: Annotated[
-        list[str],
-        typer.Option(
-            metavar="URL", help="address of the service; repeat it for several services with one database"
-        ),
-    ]
-    data: Annotated[
-        Path, typer.Option(metavar="DIR", help="directory that keeps runs until the service has them")
-    ]
-    bench: Annotated[
-        list[str] | None, typer.Option(help="bench files, or names of shipped benches; default: sim")
-    ] = None
-    name: Annotated[
-        str, typer.Option(help="name of this agent in the service; default: this machine's name")
-    ] = ""
-    keep_local: Annotated[
-        float,
-        typer.Option(
-            min=0, metavar="DAYS", help="days to keep files in DIR after their upload to the service"
-        ),
-    ] = 30.0
-    for_s: Annotated[float | None, typer.Option("--for", metavar="SECONDS", help="stop after this time")] = (
-        None
+    request = AgentRequest(
+        servers=server,
+        folder=data,
+        benches=bench,
+        token=os.environ.get(TOKEN, ""),
+        name=name,
+        local_days=options.keep_local,
+        for_s=math.inf if for_s is None else for_s,
+        ready=ready,
+        stop=stop,
     )
-    as_json: Annotated[bool, typer.Option("--json", help="print one JSON object on stdout, nothing else")] = (
-        False
-    )
-
-    def carry_out(self) -> int:
-        """Carry the command out; its exit code."""
-        import_python_can()
-        from hil.cli.bench_agent import carry_out
-
-        return carry_out(self)
+    with stop.by_signals():
+        work(request)
+    return EXIT_CODE if stop.times else 0

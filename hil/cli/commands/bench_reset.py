@@ -2,43 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Annotated
+from hil.cli.options.benches import BenchReset
+from hil.cli.output import console, print_json
+from hil.core.errors import BadInputError
+from hil.core.errors.wording import is_printable, printable, refuse_long
+from hil.engine import load_bench
+from hil.engine.bench.bus_identity import within_process
+from hil.engine.stop.emergency_stop import reset
 
-import typer
 
-from hil.app.worker.lean_imports import import_python_can
-from hil.cli.commands._options import BenchArgument, JsonObject
-
-
-@dataclass(frozen=True, kw_only=True)
-class BenchReset:
-    """Reset an emergency stop, so that the bench can be armed again. Nothing moves.
-
-    First make sure that nobody is in danger and that the cause of the stop is removed.
-    """
-
-    bench: BenchArgument
-    by: Annotated[
-        str,
-        typer.Option(
-            "--by", metavar="NAME", help="name of the person who checked that it is safe; kept in the record"
-        ),
-    ]
-    data: Annotated[
-        Path | None,
-        typer.Option(
-            "--data",
-            metavar="DIR",
-            help="data directory of the service or agent that drives this simulated bench",
-        ),
-    ] = None
-    as_json: JsonObject = False
-
-    def carry_out(self) -> int:
-        """Carry the command out; its exit code."""
-        import_python_can()
-        from hil.cli.bench_reset import carry_out
-
-        return carry_out(self)
+def execute(options: BenchReset) -> int:
+    """Execute the command; its exit code."""
+    refuse_long(options.by, "--by")
+    name = options.by.strip()
+    if not name or not is_printable(name):
+        raise BadInputError("--by is empty", fix="give the name of the person who checked that it is safe")
+    file = load_bench(options.bench)
+    stops = reset(file, name, options.data.resolve() if options.data is not None else None)
+    if options.as_json:
+        print_json({"bench": file.name, "reset": [stop.model_dump() for stop in stops]})
+        return 0
+    page = console()
+    for stop in stops:
+        text = f"reset by {name}: emergency stop of {stop.at}, by {stop.by}: {stop.why}"
+        page.print(printable(text, 500), highlight=False, markup=False, soft_wrap=True)
+    if not stops:
+        page.print(f"no emergency stop is latched on {file.name}", highlight=False, markup=False)
+        if within_process(file) and options.data is None:
+            text = "its service keeps a simulated bench's stop: reset it there, or give its --data directory"
+            page.print(text, highlight=False, markup=False)
+    return 0

@@ -2,38 +2,44 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
-import typer
+from hil.analysis.comparison import Comparison
+from hil.app.compare import HTML, compare_runs
+from hil.app.requests import CompareRequest
+from hil.cli.inputs import request_of
+from hil.cli.options.runs import Compare
+from hil.cli.output import TERMINAL, console, plain_table, print_json
+from reports.comparison import lead, value_text
 
 
-@dataclass(frozen=True, kw_only=True)
-class Compare:
-    """Compare runs of one plan: criteria, step responses overlaid, spectra.
+def execute(options: Compare) -> int:
+    """Execute the command; its exit code."""
+    outcome = compare_runs(request_of(CompareRequest, options), TERMINAL)
+    if options.as_json:
+        print_json(outcome.summary)
+    else:
+        _print(outcome.found, outcome.folder / HTML)
+    return 0
 
-    Writes comparison.json, report.html and report.pdf, all or none. The first run is the reference. To see
-    where an augmented model improves, give the measured run first, then the base model, then the augmented
-    one. Criteria are computed again from the recordings.
-    """
 
-    runs: Annotated[
-        list[Path],
-        typer.Argument(metavar="DIR...", help="run directories or recordings; the first is the reference"),
-    ]
-    out: Annotated[Path | None, typer.Option(help="directory for the results; default: out/compare-NNN")] = (
-        None
-    )
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier comparison in --out")] = (
-        False
-    )
-    as_json: Annotated[bool, typer.Option("--json", help="print comparison.json on stdout, nothing else")] = (
-        False
-    )
-
-    def carry_out(self) -> int:
-        """Carry the command out; its exit code."""
-        from hil.cli.compare import carry_out
-
-        return carry_out(self)
+def _print(found: Comparison, page: Path) -> None:
+    table = plain_table()
+    table.add_column("criterion", no_wrap=True)
+    for run in found.runs:
+        table.add_column(run.name, justify="right", no_wrap=True)
+    table.add_column("unit", no_wrap=True)
+    for row in found.criteria:
+        cells = (value_text(row, index) for index in range(len(found.runs)))
+        table.add_row(row.id, *cells, row.unit)
+    out = console()
+    out.print(table)
+    for run in found.runs:
+        if run.result.variables:
+            values = ", ".join(map(str, run.result.variables))
+            where = run.recording.source.parent
+            out.print(f"{where}: {values}", highlight=False, markup=False, soft_wrap=True)
+    out.print(f"\n{lead(found)}", highlight=False, markup=False)
+    for note in found.notes:
+        out.print(f"note: {note}", highlight=False, markup=False)
+    out.print(f"report: {page}", highlight=False, markup=False, soft_wrap=True)

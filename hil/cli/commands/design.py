@@ -2,87 +2,50 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Annotated
+from typing import Any, get_args
 
-import typer
+from hil.analysis.control_design import DesignSpec, MarginLimits, Normalisation, Objective
+from hil.app.design import design_controller
+from hil.app.requests import DesignRequest
+from hil.cli.inputs import request_of
+from hil.cli.options.controllers import Design
+from hil.cli.output import TERMINAL, print_json
+from hil.core.errors import BadInputError
+from reports.outputs.control_design import text_of
 
-from hil.cli._completion import shipped_model
-from hil.cli.commands._options import found_model
+
+def execute(options: Design) -> int:
+    """Execute the command; its exit code."""
+    outcome = design_controller(request_of(DesignRequest, options, spec=_spec(options)), TERMINAL)
+    if options.json_:
+        print_json(outcome.summary)
+    else:
+        print(text_of(outcome.found.design, outcome.found.paper, outcome.folder))
+    return 0
 
 
-@dataclass(frozen=True, kw_only=True)
-class Design:
-    """Design a controller for a model: gains, lead or notch, filters, margins, sensitivity."""
-
-    model: Annotated[
-        Path,
-        typer.Option(
-            "--model",
-            help="model file of any kind, or the name of a shipped model",
-            callback=found_model,
-            autocompletion=shipped_model(),
-        ),
-    ]
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", help="directory for the results; default: out/design-001 and so on"),
-    ] = None
-    optimize: Annotated[
-        bool, typer.Option("--optimize", help="optimise lead and pole for the lowest sensitivity in 8-20 Hz")
-    ] = False
-    objective: Annotated[str, typer.Option("--objective", help="what --optimize minimises: max or rms")] = (
-        "max"
+def _spec(options: Design) -> DesignSpec:
+    return DesignSpec(
+        stabilisation="phase" if options.notch_hz is None else "gain",
+        pole_rad_s=options.pole,
+        lead_deg=options.lead_deg,
+        lead_hz=options.lead_hz,
+        normalisation=_one_of("--normalisation", options.normalisation, get_args(Normalisation)),
+        notch_hz=options.notch_hz,
+        notch_width=options.notch_width,
+        notch_depth=options.notch_depth,
+        inertia_kg_m2=options.inertia,
+        gear_ratio=options.gear_ratio,
+        wheel_inertia_kg_m2=options.wheel_inertia,
+        torque_limit_nm=options.torque_limit,
+        optimise=options.optimize,
+        objective=_one_of("--objective", options.objective, get_args(Objective)),
+        limits=MarginLimits(sensitivity_peak=options.largest_sensitivity),
+        name=options.name,
     )
-    lead_deg: Annotated[float, typer.Option("--lead-deg", help="phase lead P_h, degrees (equation 6)")] = 36.0
-    lead_hz: Annotated[
-        float, typer.Option("--lead-hz", help="centre frequency of the lead f_ph, Hz (equation 7)")
-    ] = 40.0
-    normalisation: Annotated[
-        str,
-        typer.Option(
-            "--normalisation", help="frequency at which the lead has unity gain: dc, centre or high_frequency"
-        ),
-    ] = "high_frequency"
-    notch_hz: Annotated[
-        float | None,
-        typer.Option(
-            "--notch-hz", help="use a notch at this frequency, Hz, instead of the lead (equation 8)"
-        ),
-    ] = None
-    notch_width: Annotated[
-        float, typer.Option("--notch-width", help="damping ζ of the notch (equation 8)")
-    ] = 2.0
-    notch_depth: Annotated[float, typer.Option("--notch-depth", help="depth d of the notch (equation 8)")] = (
-        0.08
-    )
-    pole: Annotated[float, typer.Option("--pole", help="pole p of the observer, rad/s (equations 4, 5)")] = (
-        0.3
-    )
-    inertia: Annotated[
-        float | None,
-        typer.Option("--inertia", help="J_l/N² + J_m, kg m² (equations 4, 5); default: the model's"),
-    ] = None
-    gear_ratio: Annotated[
-        float | None, typer.Option("--gear-ratio", help="gear ratio N of the observer; default: the model's")
-    ] = None
-    wheel_inertia: Annotated[
-        float | None, typer.Option("--wheel-inertia", help="J_l, wheels and dyno rotors, kg m² (equation 9)")
-    ] = None
-    torque_limit: Annotated[float, typer.Option("--torque-limit", help="largest motor torque, N m")] = 150.0
-    largest_sensitivity: Annotated[
-        float, typer.Option("--largest-sensitivity", help="upper limit of |S| for --optimize")
-    ] = 1.8
-    frf: Annotated[
-        Path | None, typer.Option("--frf", help="measured responses; default: frf.csv beside the model")
-    ] = None
-    name: Annotated[str, typer.Option("--name", help="name of the controller")] = ""
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier design in --out")] = False
-    json_: Annotated[bool, typer.Option("--json", help="print design.json on stdout, nothing else")] = False
 
-    def carry_out(self) -> int:
-        """Carry the command out; its exit code."""
-        from hil.cli.design import carry_out
 
-        return carry_out(self)
+def _one_of(option: str, value: str, known: tuple[str, ...]) -> Any:
+    if value not in known:
+        raise BadInputError(f"{option} is '{value}'", fix=f"one of: {', '.join(known)}")
+    return value

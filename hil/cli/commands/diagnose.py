@@ -2,83 +2,79 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
-import typer
+from hil.analysis.diagnosis import INTERRUPTED, Diagnosis
+from hil.app.diagnose import FILES, diagnose_recordings
+from hil.app.interrupts import EXIT_CODE
+from hil.app.reading import reading_in_words
+from hil.app.requests import DiagnoseRequest
+from hil.cli.inputs import named_numbers, request_of
+from hil.cli.options.models import Diagnose
+from hil.cli.output import TERMINAL, print_json
+from hil.core.errors.digits import factor, share
+from reports.diagnosis_content import MOST_WORSE
+from reports.quantities import chance
 
-from hil.cli._completion import shipped_model
-from hil.cli.commands._options import Columns, found_model
-
-#: Options that take several values.
-SEVERAL = ("--holdout",)
+_WORTH_A_LINE = 0.02
 
 
-@dataclass(frozen=True, kw_only=True)
-class Diagnose:
-    """Find where a model and recordings disagree, identify the missing effect and add it to the model.
+def execute(options: Diagnose) -> int:
+    """Execute the command; its exit code."""
+    noise = named_numbers(options.noise or [], "--noise")
+    least = named_numbers(options.least or [], "--least")
+    outcome = diagnose_recordings(request_of(DiagnoseRequest, options, noise=noise, least=least), TERMINAL)
+    if options.json_:
+        print_json(outcome.summary)
+    else:
+        for line in reading_in_words(outcome.summary["read"]):
+            print(line)
+        print(text_of(outcome.found, outcome.folder))
+    return EXIT_CODE if outcome.found.unfinished == INTERRUPTED else 0
 
-    Writes model.toml, diagnosis.json, report.html and report.pdf, all or none.
-    """
 
-    recordings: Annotated[
-        list[Path], typer.Argument(help="recordings to explain (.mcap, .csv, .parquet, .mf4, .mat)")
-    ]
-    model: Annotated[
-        Path,
-        typer.Option(
-            "--model",
-            help="model file to start from, or the name of a shipped model",
-            callback=found_model,
-            autocompletion=shipped_model(),
-        ),
-    ]
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", help="directory for the results; default: out/diagnose-001 and so on"),
-    ] = None
-    holdout: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--holdout",
-            help="recordings for validation, not used in any fit; all files up to the next option",
-        ),
-    ] = None
-    noise: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--noise",
-            metavar="CHANNEL=VALUE",
-            help="standard deviation of a channel's samples, from its sensor's data sheet; repeatable",
-        ),
-    ] = None
-    least: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--least",
-            metavar="EFFECT=SIZE",
-            help="smallest relevant size of an effect, in its own unit; repeatable",
-        ),
-    ] = None
-    at_most: Annotated[
-        float,
-        typer.Option(
-            "--at-most",
-            metavar="MINUTES",
-            help="processor time of the search; then the result so far is reported as unfinished",
-        ),
-    ] = 10.0
-    columns: Columns = None
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier diagnosis in --out")] = (
-        False
-    )
-    json_: Annotated[bool, typer.Option("--json", help="print diagnosis.json on stdout, nothing else")] = (
-        False
-    )
-
-    def carry_out(self) -> int:
-        """Carry the command out; its exit code."""
-        from hil.cli.diagnose import carry_out
-
-        return carry_out(self)
+def text_of(found: Diagnosis, out: Path) -> str:
+    """What a person reads."""
+    unfinished = f" (unfinished: {found.unfinished}; result so far)" if found.unfinished else ""
+    lines = [f"verdict: {found.verdict}{unfinished}"]
+    for e in found.effects:
+        values = ", ".join(
+            f"{name} = {value}"
+            if isinstance(value, str)
+            else f"{name} = {value:.5g}"
+            + (f" ± {e.standard_error[name]:.2g}" if name in e.standard_error else "")
+            for name, value in e.use.values.items()
+        )
+        lines.append(f"  {e.use.id} ({chance(e.confidence)}): {values}")
+        low, high = e.where.band_hz
+        lines.append(f"    seen in {', '.join(e.where.channels)}, {low:g}-{high:g} Hz, {e.where.condition}")
+    if found.signature:
+        lines.append(f"  {found.signature}")
+    for a in found.alternatives:
+        if a.confidence >= _WORTH_A_LINE and found.verdict != "none":
+            about = a.use.values.get("channel", a.use.values.get("parameter"))
+            name = f"{a.use.id} of {about}" if about else a.use.id
+            test = f"hil run {out / a.plan}" if a.plan else a.separating_test
+            lines.append(f"  or {name} ({chance(a.confidence)}); test to distinguish them: {test}")
+    if found.start is not None:
+        lines.append("  the base model was far from the data; identified first:")
+        for parameter, (old, new, error) in found.start.parameters.items():
+            lines.append(f"    {parameter} = {new:.5g} ± {error:.2g} instead of {old:g}")
+    lines += ["", f"{'gap, of the signal':<28}{'before':>14}{'after':>14}{'noise':>14}{'after/noise':>13}"]
+    for suffix, before, after in (
+        ("", found.gap_before, found.gap_after),
+        (" (held)", found.holdout_before, found.holdout_after),
+    ):
+        for name, gap in after.items():
+            figures = (before[name].gap, gap.gap, gap.noise_floor)
+            shown = "".join(f"{share(figure, 2, digits=3):>14}" for figure in figures)
+            lines.append(f"{name + suffix:<28}{shown}{factor(gap.noises):>13}")
+    if found.open_channels and found.verdict == "named":
+        lines.append(f"remaining error above noise: {', '.join(found.open_channels)}")
+    lines += [f"made worse: {place}" for place in found.worse[:MOST_WORSE]]
+    if len(found.worse) > MOST_WORSE:
+        lines.append(f"made worse: {len(found.worse) - MOST_WORSE} more, see diagnosis.json")
+    lines += [f"note: {note}" for note in found.notes]
+    plans = sorted({a.plan for a in found.alternatives if a.plan and a.plan_text})
+    lines += ["", f"written to {out}: {', '.join([*FILES, *plans])}"]
+    return "\n".join(lines)

@@ -2,69 +2,51 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
-import typer
+from hil.analysis.target_search import Explanation
+from hil.app.explain import HTML, explain_targets
+from hil.app.interrupts import EXIT_CODE, INTERRUPTS
+from hil.app.requests import ExplainRequest
+from hil.cli.inputs import bench_or_own, named_numbers, request_of
+from hil.cli.options.models import Explain
+from hil.cli.output import TERMINAL, console, plain_table, print_json
+from reports.target_search import caution
 
-from hil.app.worker.lean_imports import import_python_can
-from hil.cli._completion import shipped_model
-from hil.cli.commands._options import OverwriteResult, SimulatedBenchName, found_model, found_targets
 
-
-@dataclass(frozen=True, kw_only=True)
-class Explain:
-    """Search for model changes, one effect or two, with which a predicted run reproduces target values.
-
-    Writes targets.json, rival_1.toml and further models, separating_plan.yaml, report.html and report.pdf.
-    Ctrl-C ends the search and keeps the results so far. Exit code: 0 a rival meets every condition, 1 none
-    does.
-    """
-
-    targets: Annotated[
-        Path | None,
-        typer.Argument(
-            help="targets file (TOML), or the name of a shipped one: paper_targets", callback=found_targets
-        ),
-    ] = None
-    target: Annotated[
-        list[str] | None,
-        typer.Option("--target", metavar="ID=VALUE", help="target value of a criterion; may be repeated"),
-    ] = None
-    plan: Annotated[
-        str | None, typer.Option(help="plan file or name; default: the targets file's, or acceptance")
-    ] = None
-    bench: SimulatedBenchName = ""
-    model: Annotated[
-        Path | None,
-        typer.Option(
-            help="model file, or the name of a shipped model; default: the bench's",
-            callback=found_model,
-            autocompletion=shipped_model(),
-        ),
-    ] = None
-    among: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--among",
-            metavar="ID",
-            help="search only this effect, or 'controller'; may be repeated",
-        ),
-    ] = None
-    evaluations: Annotated[int, typer.Option(min=20, max=100_000, help="number of predicted runs")] = 2000
-    seed: Annotated[int, typer.Option(min=0, help="random seed of the starting points")] = 0
-    out: Annotated[Path | None, typer.Option(help="directory for the results; default: out/explain-NNN")] = (
-        None
+def execute(options: Explain) -> int:
+    """Execute the command; its exit code."""
+    request = request_of(
+        ExplainRequest,
+        options,
+        figures=named_numbers(options.target or [], "--target"),
+        bench=bench_or_own(options.bench, options.plan),
     )
-    overwrite: OverwriteResult = False
-    as_json: Annotated[bool, typer.Option("--json", help="print targets.json on stdout, nothing else")] = (
-        False
-    )
+    outcome = explain_targets(request, TERMINAL)
+    found = outcome.found
+    if options.as_json:
+        print_json(outcome.summary)
+    else:
+        _print(found, outcome.folder)
+    if found.interrupted:
+        INTERRUPTS.tell()
+        return EXIT_CODE
+    return 0 if found.reached else 1
 
-    def carry_out(self) -> int:
-        """Carry the command out; its exit code."""
-        import_python_can()
-        from hil.cli.explain import carry_out
 
-        return carry_out(self)
+def _print(found: Explanation, folder: Path) -> None:
+    out = console()
+    table = plain_table()
+    table.add_column("rival")
+    for name in found.targets.values:
+        table.add_column(name, justify="right", no_wrap=True)
+    table.add_column("missed", justify="right", no_wrap=True)
+    table.add_row("target", *(f"{value:.4g}" for value in found.targets.values.values()), "")
+    for name, rival in (("base model", found.base), *((r.name, r) for r in found.rivals)):
+        figures = (rival.outcome.figures[n] for n in found.targets.values)
+        cells = ("-" if figure is None else f"{figure:.4g}" for figure in figures)
+        table.add_row(name, *cells, f"{len(rival.missed)} of {len(rival.conditions)}")
+    out.print(table)
+    for text in ("", found.verdict, caution(found)):
+        out.print(text, highlight=False, markup=False)
+    out.print(f"report: {folder / HTML}", highlight=False, markup=False, soft_wrap=True)

@@ -2,34 +2,62 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import shlex
 from pathlib import Path
-from typing import Annotated
 
-import typer
+from hil.app.results_folder import results_in
+from hil.app.samples import sample_files
+from hil.cli.options.files import Init
+from hil.cli.output import print_json, progress
+from hil.core.errors import BadInputError
+from hil.engine.bench.bench_file import DEFAULT_BENCH, shipped
+from test_plans.loading import LIBRARY
 
-from hil.app.worker.lean_imports import import_python_can
-from hil.cli.commands._options import JsonObject
+_STARTER = Path(__file__).parents[1] / "starter"
+_OWN = ("README.md", "plan.yaml")
+_NAME = "my_bench"
+_SHIPPED_MODEL = "three_inertia.toml"
 
 
-@dataclass(frozen=True, kw_only=True)
-class Init:
-    """Make a folder with a plan, a simulated bench, its model and a controller.
+def execute(options: Init) -> int:
+    """Execute the command; its exit code."""
+    folder = options.folder
+    _refuse_used(folder)
+    files = _files()
+    if options.samples:
+        with progress("samples") as show:
+            files |= sample_files(_STARTER / "samples.yaml", lambda share, text: show(text, share))
+    with results_in(folder, files) as place:
+        place.write(files)
+    if options.as_json:
+        print_json({"folder": str(folder), "files": list(files)})
+    else:
+        print(f"{folder}: {', '.join(files)}")
+        print(f"next: cd {shlex.quote(str(folder))} && hil check plan.yaml")
+    return 0
 
-    `hil check`, `hil run` and `pytest` work in it at once; its README.md says how. --samples adds the files
-    for the how-to on diagnosis: axle.toml, chirp_high.csv, chirp_low.csv, steps.csv, multisine.csv.
-    """
 
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="a new folder, or an empty one")]
-    samples: Annotated[
-        bool,
-        typer.Option("--samples", help="add recordings of an axle with backlash, to try a diagnosis"),
-    ] = False
-    as_json: JsonObject = False
+def _files() -> dict[str, bytes]:
+    """The new folder's files by name."""
+    own = {name: (_STARTER / name).read_bytes() for name in _OWN}
+    devices = {name: shipped(name).read_bytes() for name in ("rmcu.dbc", "rcs_dyno.eds")}
+    return {
+        **own,
+        "bench.toml": _bench(),
+        "model.toml": shipped(_SHIPPED_MODEL).read_bytes(),
+        "controller.toml": (LIBRARY / "controllers" / "phase_stabilization.toml").read_bytes(),
+        **devices,
+    }
 
-    def carry_out(self) -> int:
-        """Carry the command out; its exit code."""
-        import_python_can()
-        from hil.cli.init import carry_out
 
-        return carry_out(self)
+def _bench() -> bytes:
+    """The shipped simulated bench under a name of its own, with the model beside it."""
+    text = shipped(f"{DEFAULT_BENCH}.toml").read_text(encoding="utf-8")
+    text = text.replace(f'name = "{DEFAULT_BENCH}"', f'name = "{_NAME}"')
+    text = text.replace(f'channel = "{DEFAULT_BENCH}/', f'channel = "{_NAME}/')
+    return text.replace(f'model = "{_SHIPPED_MODEL}"', 'model = "model.toml"').encode()
+
+
+def _refuse_used(folder: Path) -> None:
+    if folder.is_dir() and any(folder.iterdir()):
+        raise BadInputError("is not empty", where=str(folder), fix="name a new folder")

@@ -2,35 +2,34 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Annotated
+from hil.app.reading import reading_in_words
+from hil.app.report import renew_report
+from hil.app.requests import ReportRequest
+from hil.cli.inputs import request_of
+from hil.cli.options.runs import Report
+from hil.cli.output import TERMINAL, console, count_in_words, print_criteria, print_json
+from hil.cli.streams import complain
 
-import typer
 
-from hil.cli.commands._options import Columns
-
-
-@dataclass(frozen=True, kw_only=True)
-class Report:
-    """Renew a report from its recording; compute the criteria again from the channels.
-
-    Beside its own recording a report is renewed in place. A recording that another tool made gets a report
-    of its channels, without verdict.
-    """
-
-    source: Annotated[
-        Path, typer.Argument(metavar="DIR_OR_RECORDING", help="a run's directory, or a recording")
-    ]
-    out: Annotated[Path | None, typer.Option(help="where to write; default: beside the recording")] = None
-    columns: Columns = None
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="replace the reports of another recording")
-    ] = False
-    as_json: Annotated[bool, typer.Option("--json", help="print the result on stdout, nothing else")] = False
-
-    def carry_out(self) -> int:
-        """Carry the command out; its exit code."""
-        from hil.cli.report import carry_out
-
-        return carry_out(self)
+def execute(options: Report) -> int:
+    """Execute the command; its exit code."""
+    renewed = renew_report(request_of(ReportRequest, options), TERMINAL)
+    result, page = renewed.result, renewed.folder / renewed.files["html"]
+    if result is None:
+        if options.as_json:
+            print_json({"verdict": None, "files": renewed.files, "read": renewed.read})
+        else:
+            for line in reading_in_words(renewed.read):
+                console().print(line, highlight=False, markup=False, soft_wrap=True)
+            text = f"no plan in {renewed.recording}: a report of its channels\nreport: {page}"
+            console().print(text, highlight=False)
+        return 0
+    if options.as_json:
+        print_json(result.model_dump(mode="json"))
+    else:
+        print_criteria(console(), result.criteria)
+        verdict = f"{result.verdict.upper()}, {count_in_words(result.criteria)}"
+        console().print(f"\n{verdict}\nreport: {page}", highlight=False)
+        if result.reason:
+            complain("error" if result.verdict == "error" else "note", result.reason)
+    return {"pass": 0, "done": 0, "fail": 1, "error": 1}[result.verdict]

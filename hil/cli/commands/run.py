@@ -2,89 +2,163 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import sys
 from pathlib import Path
-from typing import Annotated
 
-import typer
+from hil.app.run import FinishedRun, RunSettings
+from hil.app.series import announce_series, repeated, run_series
+from hil.cli.inputs import all_choices, bench_or_own
+from hil.cli.options.runs import Run
+from hil.cli.output import (
+    TERMINAL,
+    console,
+    count_in_words,
+    expiry_in_words,
+    identities_in_words,
+    print_criteria,
+    print_json,
+    warn,
+)
+from hil.cli.run_output import print_in_series, print_series, show_in_browser, times_in_words, timing_in_words
+from hil.core.errors import BadInputError
+from hil.core.errors.wording import printable
+from hil.core.model import load_model
+from hil.core.result import RunResult
+from hil.engine import DEFAULT_BENCH, BenchFile, load_bench
+from test_plans import Plan, load_plan
 
-from hil.app.worker.lean_imports import import_python_can
-from hil.cli._completion import shipped_model
-from hil.cli.commands._options import BenchName, Controllers, Operator, PlanName, found_model
 
-SEVERAL = ("--controller", "--set")
+def execute(options: Run) -> int:
+    """Execute the command; its exit code."""
+    choices = list(all_choices(options.values, options.controller))
+    if options.server:
+        _refuse_here_only(
+            model=options.model,
+            controller=options.controller,
+            repeat=options.repeat * len(choices),
+            confirm=options.confirm,
+        )
+        from hil.cli.remote_run import RemoteRun  # costs a run here nothing
+
+        remote = RemoteRun(
+            options.server,
+            options.plan,
+            options.bench or DEFAULT_BENCH,
+            dict(choices[0].values),
+            options.yes,
+            options.accept_expired,
+            options.overwrite,
+        )
+        return remote.execute(
+            options.out,
+            lambda result, folder: _print_run(result, folder, show=options.show, as_json=options.as_json),
+        )
+    plans = [load_plan(options.plan, choice) for choice in choices]
+    bench = load_bench(bench_or_own(options.bench, options.plan, drives=True))
+    inputs = [
+        bench.source,
+        *([Path(options.plan)] if Path(options.plan).is_file() else []),
+        *([options.model] if options.model else []),
+    ]
+    settings = RunSettings(
+        model=load_model(options.model) if options.model else None,
+        operator=options.operator,
+        confirmed_by=options.yes,
+        hazard_confirmed_by=options.confirm or _asked_for_name(plans[0]),
+        accept_expired=options.accept_expired,
+        inputs=(*inputs, *choices[0].controllers.values()),
+        overwrite=options.overwrite,
+        feedback=TERMINAL,
+    )
+    if len(plans) * options.repeat > 1:
+        return _run_series(options, settings, plans, bench)
+    with settings.execute(plans[0], bench, options.out) as run:
+        _print_run(run.result, run.folder, show=options.show, as_json=options.as_json)
+        return run.exit_code
 
 
-@dataclass(frozen=True, kw_only=True)
-class Run:
-    """Run a test plan on a bench and write recording.mcap, result.json, report.html, report.pdf, junit.xml.
+def _run_series(options: Run, settings: RunSettings, plans: list[Plan], bench: BenchFile) -> int:
+    announce_series(plans, options.repeat, options.out, TERMINAL)
 
-    Exit code: 0 passed, 1 a criterion failed, 2 bad input, 3 the bench failed, 130 interrupted.
+    def print_run(run: FinishedRun) -> None:
+        if not options.as_json:
+            print_in_series(run)
+
+    outcome = run_series(settings, plans, repeated(bench, options.repeat), options.out, print_run)
+    if options.as_json:
+        print_json(outcome.summary)
+    else:
+        print_series(outcome.summary, outcome.folder)
+    return outcome.exit_code
+
+
+def _refuse_here_only(*, model: Path | None, controller: list[str] | None, repeat: int, confirm: str) -> None:
+    """A service takes plans as they are, one at a time, and asks a second person for hazardous ones.
+
+    Raises:
+        BadInputError: names the option.
     """
+    here_only = {
+        "--model": model,
+        "--controller": controller,
+        "--repeat, or --set with several values,": repeat > 1,
+        "--confirm": confirm,
+    }
+    for option, given in here_only.items():
+        if given:
+            raise BadInputError(
+                f"{option} does not go with --server", where="--server", fix="leave one of them out"
+            )
 
-    plan: PlanName
-    bench: BenchName = ""
-    out: Annotated[
-        Path | None,
-        typer.Option(help="directory for recording and reports; default: a new one, out/PLAN-001 and so on"),
-    ] = None
-    model: Annotated[
-        Path | None,
-        typer.Option(
-            help="model file for the simulated bench, or the name of a shipped model",
-            callback=found_model,
-            autocompletion=shipped_model(),
-        ),
-    ] = None
-    values: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="NAME=VALUE",
-            help="value of a variable of the plan; NAME=VALUE,VALUE,… runs the plan for each value",
-        ),
-    ] = None
-    repeat: Annotated[
-        int, typer.Option(min=1, max=1000, help="number of runs, each in its own folder, with the spread")
-    ] = 1
-    controller: Controllers = None
-    operator: Operator = ""
-    yes: Annotated[
-        str,
-        typer.Option(
-            "--yes",
-            metavar="NAME",
-            help="name of the person who confirms all operator prompts; printed in the report",
-        ),
-    ] = ""
-    confirm: Annotated[
-        str,
-        typer.Option(
-            "--confirm",
-            metavar="NAME",
-            help="name of the person who authorises a hazardous plan; printed in the report",
-        ),
-    ] = ""
-    accept_expired: Annotated[
-        str,
-        typer.Option(
-            metavar="'NAME: reason'",
-            help="person who accepts expired sensor calibrations, and why; printed in the report",
-        ),
-    ] = ""
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier run in --out")] = False
-    server: Annotated[
-        str,
-        typer.Option(metavar="URL", help="run it on a bench service (hil serve); HIL_TOKEN holds the token"),
-    ] = ""
-    show: Annotated[
-        bool, typer.Option("--open", help="open the report of a single run in a browser, if one is installed")
-    ] = False
-    as_json: Annotated[bool, typer.Option("--json", help="print result.json on stdout, nothing else")] = False
 
-    def carry_out(self) -> int:
-        """Carry the command out; its exit code."""
-        import_python_can()
-        from hil.cli.run import carry_out
+def _print_run(result: RunResult, folder: Path, *, show: bool, as_json: bool) -> None:
+    if as_json:
+        print_json(result.model_dump(mode="json"))
+    else:
+        _print_result(result, folder)
+    if show and "html" in result.files:
+        show_in_browser(folder / result.files["html"])
 
-        return carry_out(self)
+
+def _asked_for_name(plan: Plan) -> str:
+    """Who takes a hazardous plan upon them; asked before anything of the bench is opened."""
+    if not plan.hazardous or not sys.stdin.isatty():
+        return ""
+    why = f": {printable(plan.hazardous, 500)}" if isinstance(plan.hazardous, str) else ""
+    print(f"The plan {plan.name} is hazardous{why}\nYour name, to execute it:", file=sys.stderr)
+    return sys.stdin.readline().strip()
+
+
+def _recorded_in_words(result: RunResult) -> str:
+    """What a run did that judged nothing."""
+    count = sum(segment.complete for segment in result.segments)
+    whole = "1 segment" if count == 1 else f"{count} segments"
+    return f"{whole} recorded, " if result.verdict == "done" else ""
+
+
+def _print_result(result: RunResult, folder: Path) -> None:
+    page = console()
+    if result.criteria:
+        print_criteria(page, result.criteria)
+    page.print(
+        f"\n{result.plan} on {result.bench}: [bold]{result.verdict.upper()}[/], "
+        f"{_recorded_in_words(result)}{count_in_words(result.criteria)}   "
+        f"safe state {result.safe_state.replace('_', ' ')}   "
+        f"{result.bench_time_s:.0f} s of bench time, {times_in_words(result.real_time_factor)} x real time",
+        highlight=False,
+    )
+    for line in timing_in_words(result.timing):
+        page.print(line, highlight=False)
+    for limit in result.limits:
+        if limit.reached:
+            times = "once" if limit.reached == 1 else f"{limit.reached} times"
+            warn(f"limit {limit.name} was reached {times}; response: {limit.response}")
+    for text in (*result.missing, *(f"not checked: {text}" for text in result.not_checked)):
+        warn(text)
+    if result.accepted_expired:
+        warn(expiry_in_words(result.accepted_expired))
+    devices = identities_in_words(result.identities)
+    if devices:
+        page.print(f"devices: {devices}", highlight=False, markup=False, soft_wrap=True)
+    shown = "html" if "html" in result.files else "recording"
+    page.print(f"{'report' if shown == 'html' else shown}: {folder / result.files[shown]}", highlight=False)

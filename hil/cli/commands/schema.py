@@ -2,34 +2,42 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Annotated
+from collections.abc import Callable
+from typing import Any
 
-import typer
+from hil.cli.options.files import Schema
+from hil.cli.output import print_json
+from hil.core.controller import controller_schema
+from hil.core.errors import BadInputError
+from hil.core.errors.wording import did_you_mean, printable
+from hil.core.model.schema import model_schema
+from hil.engine.bench.bench_schema import bench_schema
+from test_plans import plan_schema
 
-from hil.app.worker.lean_imports import import_python_can
-from hil.cli._completion import one_of
+
+def _campaign_schema() -> dict[str, Any]:
+    from hil.analysis.campaigns import (
+        campaign_schema,
+    )  # with statistics: a second that the others do not need
+
+    return campaign_schema()
 
 
-@dataclass(frozen=True, kw_only=True)
-class Schema:
-    """Print the JSON schema of plan, bench, model, controller or campaign files.
+_SCHEMAS: dict[str, Callable[[], dict[str, Any]]] = {
+    "plan": plan_schema,
+    "bench": bench_schema,
+    "model": model_schema,
+    "controller": controller_schema,
+    "campaign": _campaign_schema,
+}
 
-    Editors complete and check with it: yaml-language-server for plans and campaigns, Taplo (Even Better
-    TOML) for the rest.
-    """
 
-    kind: Annotated[
-        str,
-        typer.Argument(
-            help="kind of file: plan, bench, model, controller or campaign",
-            autocompletion=one_of("plan", "bench", "model", "controller", "campaign"),
-        ),
-    ] = "plan"
-
-    def carry_out(self) -> int:
-        """Carry the command out; its exit code."""
-        import_python_can()
-        from hil.cli.schema import carry_out
-
-        return carry_out(self)
+def execute(options: Schema) -> int:
+    """Execute the command; its exit code."""
+    kind = options.kind
+    if kind not in _SCHEMAS:
+        raise BadInputError(
+            f"there is no schema for '{printable(kind, 60)}'", fix=did_you_mean(kind, _SCHEMAS)
+        )
+    print_json(_SCHEMAS[kind]())
+    return 0

@@ -1,116 +1,90 @@
-"""`hil serve`: the bench service."""
+"""`hil serve`: the bench service, until somebody ends it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Annotated
+import importlib.util
+import math
+import os
+import sys
+from typing import TYPE_CHECKING
 
-import typer
+from hil.app.interrupts import EXIT_CODE
+from hil.cli.options.benches import Serve
+from hil.cli.output import print_json
+from hil.core.errors import BadInputError
+from hil.engine import StopRequest
 
-from hil.app.worker.lean_imports import import_python_can
+if TYPE_CHECKING:
+    from hil.service.jobs.campaigns import Simulating
 
-SEVERAL = ("--bench", "--allow-host", "--trusted-proxy")
+
+def execute(options: Serve) -> int:
+    """Execute the command; its exit code."""
+    data = options.data
+    bench = options.bench or []
+    trusted_proxy = options.trusted_proxy or []
+    allow_host = options.allow_host or []
+    for_s = options.for_s
+    # The extra 'service' brings what they need.
+    from hil.service.serving import ServeRequest, make_token, serve
+
+    if for_s is not None and not for_s > 0:
+        raise BadInputError(f"--for is {for_s:g}", fix="give seconds greater than 0, or leave it out")
+    if bench and options.no_bench:
+        raise BadInputError("--bench does not go with --no-bench", fix="leave one of them out")
+    if options.add_token:
+        name, _, role = options.add_token.rpartition("=")
+        made = make_token(data, options.database, name, role, options.token_days)
+        if options.as_json:
+            print_json(made.model_dump(mode="json"))
+        else:
+            print(f"# token of {made.token.name}, {made.token.role}; it is printed only once\n{made.secret}")
+        return 0
+    stop = StopRequest()
+
+    def ready(url: str) -> None:
+        if options.as_json:
+            print_json({"url": url, "data": str(data.resolve())})
+        else:
+            print(f"The bench service is at {url} (Ctrl-C ends it); data directory: {data}")
+        sys.stdout.flush()
+
+    request = ServeRequest(
+        folder=data,
+        benches=[] if options.no_bench else bench or ["sim"],
+        simulating=_simulating(options.workers, options.scheduler),
+        host=options.host,
+        port=options.port,
+        stop_port=options.stop_port,
+        stop_url=options.stop_url,
+        trusted_proxies=trusted_proxy,
+        database=options.database,
+        store=options.store,
+        local_days=options.keep_local,
+        hosts=allow_host,
+        rate=options.rate,
+        for_s=math.inf if for_s is None else for_s,
+        ready=ready,
+        stop=stop,
+    )
+    with stop.by_signals():
+        serve(request)
+    return EXIT_CODE if stop.times else 0
 
 
-@dataclass(frozen=True, kw_only=True)
-class Serve:
-    """Run the bench service, which shares benches: a run queue, a REST API and a live page.
+def _simulating(workers: int | None, scheduler: str) -> Simulating:
+    """Who simulates; without a word, all processors but one, which is left to runs.
 
-    Serves until Ctrl-C or SIGTERM; it then ends runs under way with their end steps. Without tokens it
-    accepts connections from this machine only. Exit code: 0 the time of --for is over, 2 bad input, 3 the
-    port is in use or the database cannot be used, 130 ended by a signal.
+    Raises:
+        BadInputError: both are named.
     """
+    from hil.service.jobs.campaigns import Simulating
 
-    data: Annotated[Path, typer.Option(metavar="DIR", help="directory for runs, plans and the database")]
-    bench: Annotated[
-        list[str] | None, typer.Option(help="bench files, or names of shipped benches; default: sim")
-    ] = None
-    no_bench: Annotated[
-        bool, typer.Option("--no-bench", help="serve only benches of agents, none of this machine")
-    ] = False
-    host: Annotated[
-        str, typer.Option(help="address to listen on; any other than the loopback needs tokens")
-    ] = "127.0.0.1"
-    port: Annotated[int, typer.Option(min=0, max=65535, help="port; 0 takes a free one")] = 8080
-    stop_port: Annotated[
-        int | None,
-        typer.Option(
-            min=0, max=65535, help="port of the stop post; default: the one after --port; 0 takes a free one"
-        ),
-    ] = None
-    stop_url: Annotated[
-        str,
-        typer.Option(metavar="URL", help="address of the stop post for browsers, if it is behind a proxy"),
-    ] = ""
-    trusted_proxy: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="ADDRESS",
-            help="address of a proxy whose headers for client address and TLS are trusted",
-        ),
-    ] = None
-    allow_host: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME", help="additional host name that browsers may use for the service"),
-    ] = None
-    database: Annotated[
-        str,
-        typer.Option(
-            metavar="URL",
-            envvar="HIL_DATABASE",
-            help="database instead of SQLite in DIR: postgresql://user@host/name",
-        ),
-    ] = ""
-    store: Annotated[
-        str,
-        typer.Option(
-            metavar="URL",
-            help="second place for files of runs: s3://bucket/prefix, or a folder on another disk",
-        ),
-    ] = ""
-    keep_local: Annotated[
-        float,
-        typer.Option(min=0, metavar="DAYS", help="days to keep files in DIR after they are in the store"),
-    ] = 30.0
-    workers: Annotated[
-        int | None,
-        typer.Option(min=0, max=1024, help="worker processes for campaigns; default: all processors but one"),
-    ] = None
-    scheduler: Annotated[
-        str,
-        typer.Option(
-            metavar="ADDRESS", help="address of a dask.distributed scheduler; use its workers instead"
-        ),
-    ] = ""
-    rate: Annotated[
-        float,
-        typer.Option(
-            min=1,
-            metavar="N",
-            help="requests per second allowed for a client address; a proxy counts as one client",
-        ),
-    ] = 40.0
-    for_s: Annotated[float | None, typer.Option("--for", metavar="SECONDS", help="stop after this time")] = (
-        None
-    )
-    add_token: Annotated[
-        str,
-        typer.Option(
-            metavar="NAME=ROLE",
-            help="make a token, print it and exit; roles: viewer, operator, engineer, admin, agent",
-        ),
-    ] = ""
-    token_days: Annotated[
-        float, typer.Option(min=0.01, max=3650, metavar="DAYS", help="validity of that token, days")
-    ] = 365.0
-    as_json: Annotated[bool, typer.Option("--json", help="print one JSON object on stdout, nothing else")] = (
-        False
-    )
-
-    def carry_out(self) -> int:
-        """Carry the command out; its exit code."""
-        import_python_can()
-        from hil.cli.serve import carry_out
-
-        return carry_out(self)
+    if scheduler and workers is not None:
+        raise BadInputError("--workers does not go with --scheduler", where="--workers", fix="leave one out")
+    if scheduler:
+        return Simulating(scheduler=scheduler)
+    if workers is None:
+        dask = importlib.util.find_spec("distributed") is not None
+        workers = max(1, len(os.sched_getaffinity(0)) - 1) if dask else 0
+    return Simulating(workers=workers)

@@ -2,31 +2,40 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Annotated
+from hil.app.feedback import warn_of_damage
+from hil.app.reading import reading_of
+from hil.app.results_folder import refuse_file
+from hil.cli.options.models import Simulate
+from hil.cli.output import TERMINAL, console, print_json, warn
+from hil.core.model import load_model
+from hil.core.recording import column_map, read_recording, write_recording
+from hil.plant import replay
 
-import typer
 
-from hil.cli.commands._options import Columns, JsonObject, ModelOption, OverwriteFile
-
-
-@dataclass(frozen=True, kw_only=True)
-class Simulate:
-    """Replay a recording's motor_torque_ref_nm through a model, from the recording's initial speeds.
-
-    The model's outputs are written at the recording's time stamps.
-    """
-
-    model: ModelOption
-    source: Annotated[Path, typer.Option("--input", help="recording with motor_torque_ref_nm")]
-    out: Annotated[Path, typer.Option(help="file to write: .csv, .parquet, .mf4 or .mat")]
-    columns: Columns = None
-    overwrite: OverwriteFile = False
-    as_json: JsonObject = False
-
-    def carry_out(self) -> int:
-        """Carry the command out; its exit code."""
-        from hil.cli.simulate import carry_out
-
-        return carry_out(self)
+def execute(options: Simulate) -> int:
+    """Execute the command; its exit code."""
+    out = options.out
+    refuse_file(out, [options.source, options.model], overwrite=options.overwrite)
+    chosen = load_model(options.model)
+    if chosen.doubt:
+        warn(f"the model is doubtful: {chosen.doubt}")
+    recording = read_recording(options.source, columns=column_map(options.columns))
+    warn_of_damage(TERMINAL, [recording])
+    simulated = replay(chosen, recording)
+    notes = [*recording.notes, *simulated.notes]
+    write_recording(simulated, out)
+    if options.as_json:
+        print_json(
+            {
+                "file": str(out),
+                "samples": len(simulated.time_s),
+                "channels": list(simulated.channels),
+                "notes": notes,
+                "read": reading_of([recording]),
+            }
+        )
+        return 0
+    for note in notes:
+        console().print(f"note: {note}", highlight=False, markup=False, soft_wrap=True)
+    console().print(f"{len(simulated.time_s)} samples: {out}", highlight=False)
+    return 0

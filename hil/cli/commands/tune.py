@@ -2,139 +2,122 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
-import typer
+from hil.analysis.diagnosis import Diagnosis
+from hil.analysis.tuning import Tuning
+from hil.app.interrupts import EXIT_CODE, INTERRUPTS
+from hil.app.requests import SearchRequest, TuneRequest
+from hil.app.result_file import Outcome
+from hil.app.tuning.confirmation import Ran
+from hil.app.tuning.refinement import Refined
+from hil.app.tuning.tune import Reports, tune_controller
+from hil.cli.commands.diagnose import text_of as diagnosis_in_words
+from hil.cli.inputs import bench_or_own, named_numbers, request_of
+from hil.cli.options.controllers import Tune
+from hil.cli.output import TERMINAL, console, plain_table, print_json
+from hil.cli.streams import complain
+from hil.core.errors import BadInputError
+from hil.core.errors.digits import share
+from reports.outputs.refinement import REFINEMENT_HEAD, refinement_rows, refinement_verdict
+from reports.outputs.tuning import text_of
 
-from hil.app.worker.lean_imports import import_python_can
-from hil.cli._completion import shipped_bench, shipped_model
-from hil.cli.commands._options import Operator, OverwriteResult, PlanName, found_model
 
-SEVERAL = ("--envelope",)
+def execute(options: Tune) -> int:
+    """Execute the command; its exit code."""
+    _refuse_together(options)
+    bench = options.on_bench or bench_or_own(options.bench, options.plan, drives=options.then_run)
+    request = request_of(
+        TuneRequest,
+        options,
+        search=request_of(SearchRequest, options, bench=bench),
+        refine=bool(options.on_bench),
+        envelope=named_numbers(options.envelope or [], "--envelope"),
+    )
+    outcome = tune_controller(request, TERMINAL, _Prints(options))
+    tuned = outcome.found
+    if options.json_:
+        print_json(outcome.summary)
+    elif tuned.ran is not None:
+        _print_run(tuned.ran)
+    elif tuned.refined is not None:
+        _print_refined(tuned.refined)
+    if tuned.stopped or tuned.exit_code == EXIT_CODE:
+        INTERRUPTS.tell()
+        return EXIT_CODE
+    return tuned.exit_code
 
 
-@dataclass(frozen=True, kw_only=True)
-class Tune:
-    """Optimise a controller's parameters for the largest worst margin over a plan's criteria.
+class _Prints(Reports):
+    """Prints each stage when it has ended, unless one JSON object is wanted."""
 
-    Each candidate is evaluated by predicted runs of the whole plan, on the nominal model and on vehicles
-    sampled around it. Writes controller.toml, free.toml, tune.json, report.html, report.pdf and a figure.
-    Ctrl-C ends the search and keeps the best so far.
+    def __init__(self, options: Tune) -> None:
+        self._options = options
 
-    --then-run then runs the plan with the tuned controller: run/ holds the run. If it deviates from the
-    prediction, diagnosis/ holds the reason.
+    def found(self, tuning: Tuning, folder: Path, drawn: int) -> None:
+        """The search's table."""
+        if not self._options.json_:
+            print(text_of(tuning, str(folder)))
+        tried = len(tuning.trial.draws)
+        if tried < drawn:
+            text = f"stopped: compared on {tried} of {drawn} vehicles, those that the search had used"
+            complain("note", text)
 
-    --on-bench refines the controller on that bench with at most --runs runs. One consent before the first
-    run covers all runs within an envelope. Each run is predicted first and refused if it would leave the
-    envelope. bench/ holds the runs; controller.toml is the best one measured.
+    def diagnosed(self, outcome: Outcome[Diagnosis]) -> None:
+        """The diagnosis of the run."""
+        if not self._options.json_:
+            print(diagnosis_in_words(outcome.found, outcome.folder))
 
-    Exit code: 0 every criterion that depends on the controller passes (on every vehicle; with --then-run: in
-    the run, and as predicted; with --on-bench: in the best run), 1 one does not, 3 a run failed.
+
+def _refuse_together(options: Tune) -> None:
+    """Raises:
+    BadInputError: an option without the one that it goes with, or beside one that it does not go with.
     """
+    given = {"--runs": options.runs is not None, "--envelope": options.envelope, "--confirm": options.confirm}
+    for option, is_given in given.items():
+        if is_given and not options.on_bench:
+            fix = "add --on-bench BENCH, or leave it out"
+            raise BadInputError(f"{option} goes with --on-bench", where=option, fix=fix)
+    if options.on_bench and (options.bench or options.then_run):
+        option = "--bench" if options.bench else "--then-run"
+        raise BadInputError(f"{option} does not go with --on-bench", where=option, fix="leave it out")
 
-    plan: PlanName
-    model: Annotated[
-        Path,
-        typer.Option(
-            "--model",
-            help="model file of the axle (a chain), effects included, or the name of a shipped model",
-            callback=found_model,
-            autocompletion=shipped_model(),
-        ),
-    ]
-    out: Annotated[Path | None, typer.Option(help="directory for the results; default: out/tune-NNN")] = None
-    free: Annotated[
-        Path | None,
-        typer.Option(
-            help="TOML with free parameters, weights, hard limits and tolerances; default: the built-in one"
-        ),
-    ] = None
-    controller: Annotated[
-        str,
-        typer.Option(help="file name of the plan's controller to tune; default: the last one"),
-    ] = ""
-    start: Annotated[Path | None, typer.Option(help="initial controller file; default: the plan's")] = None
-    draws: Annotated[
-        int,
-        typer.Option(
-            min=0,
-            max=5000,
-            help="vehicles sampled from uncertainty and tolerances; 0: the nominal model only",
-        ),
-    ] = 0
-    seed: Annotated[int, typer.Option(min=0, help="random seed of sampling and search")] = 0
-    starts: Annotated[
-        int,
-        typer.Option(min=0, max=1000, help="number of additional starting points of the optimiser"),
-    ] = 6
-    at_most: Annotated[
-        float | None,
-        typer.Option(
-            metavar="MINUTES", min=0.01, help="stop the search after this time; keep the best so far"
-        ),
-    ] = None
-    processes: Annotated[
-        int | None, typer.Option(min=1, max=256, help="parallel predictions; default: one per core")
-    ] = None
-    bench: Annotated[
-        str,
-        typer.Option(
-            help="simulated bench to predict on, by file or name; default: that of --on-bench, else as of "
-            "`hil run`",
-            autocompletion=shipped_bench(),
-        ),
-    ] = ""
-    then_run: Annotated[
-        bool,
-        typer.Option(
-            "--then-run", help="then run the plan with the tuned controller; compare with the prediction"
-        ),
-    ] = False
-    differ: Annotated[
-        float,
-        typer.Option(
-            metavar="PERCENT",
-            min=0.01,
-            max=1000,
-            help="deviation from the prediction, % of a criterion's limit, above which a run is diagnosed",
-        ),
-    ] = 5.0
-    on_bench: Annotated[
-        str,
-        typer.Option(
-            "--on-bench",
-            metavar="BENCH",
-            help="refine the controller by runs on BENCH, within a trust region around the prediction",
-            autocompletion=shipped_bench(),
-        ),
-    ] = ""
-    runs: Annotated[
-        int | None, typer.Option(min=1, max=200, help="with --on-bench: largest number of runs; default: 20")
-    ] = None
-    envelope: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="CHANNEL=VALUE",
-            help="with --on-bench: largest magnitude allowed in a run, or bench_time_s for all runs; "
-            "default: 1.3 times the values predicted for the plan",
-        ),
-    ] = None
-    confirm: Annotated[
-        str,
-        typer.Option(
-            metavar="NAME",
-            help="with --on-bench: name of the person who authorises all runs within the envelope",
-        ),
-    ] = ""
-    operator: Operator = ""
-    overwrite: OverwriteResult = False
-    json_: Annotated[bool, typer.Option("--json", help="print tune.json on stdout, nothing else")] = False
 
-    def carry_out(self) -> int:
-        """Carry the command out; its exit code."""
-        import_python_can()
-        from hil.cli.tune import carry_out
+def _print_refined(refined: Refined) -> None:
+    """The runs as a table."""
+    page, table = console(), plain_table("\non the bench: worst margins")
+    for number, name in enumerate(REFINEMENT_HEAD):
+        table.add_column(name, justify="right" if number < 5 else "left", no_wrap=number < 6)
+    for row in refinement_rows(refined.found):
+        table.add_row(*row)
+    page.print(table)
+    page.print(refinement_verdict(refined.found), highlight=False, markup=False, soft_wrap=True)
 
-        return carry_out(self)
+
+def _print_run(ran: Ran) -> None:
+    """Predicted and measured side by side."""
+    page, table = console(), plain_table("\npredicted and measured")
+    table.add_column("criterion", no_wrap=True)
+    for name in ("predicted", "measured", "difference"):
+        table.add_column(name, justify="right")
+    table.add_column("unit")
+    table.add_column("of the limit", justify="right")
+    table.add_column("run")
+    for one in ran.confirmation.criteria:
+        difference = "-" if one.difference is None else f"{one.difference:+.3g}"
+        apart = share(one.apart, 2) if one.of_limit and one.apart is not None else "-"
+        style = "bold red" if one in ran.confirmation.beyond else ""
+        values = ("-" if v is None else f"{v:.5g}" for v in (one.predicted.value, one.measured.value))
+        table.add_row(one.id, *values, difference, one.unit, apart, one.measured.verdict, style=style)
+    page.print(table)
+    page.print(_verdict(ran), highlight=False, markup=False, soft_wrap=True)
+
+
+def _verdict(ran: Ran) -> str:
+    allowed = f"{100 * ran.confirmation.allowed:g} % of the limit (of the larger value where there is none)"
+    if ran.confirmation.agrees:
+        return f"As predicted, within {allowed}."
+    names = ", ".join(one.id for one in ran.confirmation.beyond)
+    return (
+        f"Deviation from the prediction by more than {allowed}: {names}. Diagnosis: {ran.diagnosed or 'none'}"
+    )

@@ -35,7 +35,7 @@ def read_can_log(path: Path, stamps: Stamps = "") -> CanLog:
 
             log = read_mdf_frames(path)
         case ".asc" | ".blf" | ".trc" | ".log":
-            from hil.core.can_logs._messages import read_messages
+            from hil.core.can_logs._python_can import read_messages
 
             log = read_messages(path, stamps)
         case _:

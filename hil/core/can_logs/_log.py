@@ -11,10 +11,10 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock
 from hil.core.errors import BadInputError
-from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock
 
-#: What no recording has a place for; names as users are told them.
+#: What no recording has a place for; names as users see them.
 REMOTE, LONG = "remote frames", "CAN FD frames of more than 8 bytes"
 IMPOSSIBLE = "frames with an identifier or a stamp that none can have"
 SHORT = "frames with fewer bytes than they say"

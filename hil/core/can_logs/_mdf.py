@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
 from hil.core.can_logs._log import LONG, LONGEST_DATA, REMOTE, CanLog, block_of, ordered
 from hil.core.errors import BadInputError
-from hil.core.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
-from hil.core.mdf_file import open_mdf
+from hil.core.recording.mdf_file import open_mdf
 
 _DATA, _ERROR, _REMOTE = "CAN_DataFrame", "CAN_ErrorFrame", "CAN_RemoteFrame"  # ASAM MDF bus logging 1.0
 _EXTENDED_BIT = 0x8000_0000

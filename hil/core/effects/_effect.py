@@ -12,8 +12,8 @@ from hil.core.channels import OUTPUTS
 from hil.core.effects._law import Law
 from hil.core.effects._probe import Probes
 from hil.core.errors import BadInputError
-from hil.core.mistakes import Mistakes
-from hil.core.suggestion import closest, did_you_mean
+from hil.core.errors.mistakes import Mistakes
+from hil.core.errors.wording import closest, did_you_mean
 
 #: What a model gives, and so what a sensor effect can bend.
 SENSED = ("motor_torque_nm", *OUTPUTS)
@@ -123,7 +123,7 @@ class Effect:
         makes: the model kind that a model is with it, where that is another.
         law: how it acts; memory: what it keeps from step to step.
         probes: the sizes that a diagnosis tries first.
-        kin: effects that look like it, tried along with it.
+        similar: effects that look like it, tried along with it.
         abrupt: errors have false minima in its size: fits are repeated from other sizes.
         many_laws: formulas for it differ, so that one of them never closes a gap to the noise.
         forms: laws of other authors, each the numbers that it moves with the values to try them from: tried
@@ -148,7 +148,7 @@ class Effect:
     off: float = 0.0
     memory: Memory | None = None
     probes: Probes | None = None
-    kin: tuple[str, ...] = ()
+    similar: tuple[str, ...] = ()
     abrupt: bool = False
     many_laws: bool = False
     forms: tuple[Mapping[str, tuple[float, ...]], ...] = ()
@@ -197,7 +197,7 @@ class Effect:
                 complete[name] = self._text(name, values.get(name))
         meant = {closest(key, known) for key in values if key not in known}
         for parameter in self.parameters:
-            if parameter.name not in values and parameter.name in meant:  # its misspelling has been told
+            if parameter.name not in values and parameter.name in meant:  # its misspelling has been reported
                 continue
             with mistakes.of(parameter.name):
                 complete[parameter.name] = self._number(parameter, values.get(parameter.name))

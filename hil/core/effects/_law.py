@@ -40,7 +40,7 @@ Force = Callable[[Motion, Chain, float, Values], float]
 
 @dataclass(frozen=True)
 class Law:
-    """Where an effect acts and how; what is None it leaves alone. Torques in N m, wheel side where not said.
+    """Where an effect acts and how; what is None it leaves alone. Torques in N m, wheel side unless stated.
 
     Args:
         chain: changes the linear numbers (a dict of `Chain`'s fields) by the effect's values.
@@ -64,6 +64,7 @@ class Law:
         steady: whether forces are constant for these values: then they are not computed anew.
         follows: the angle that the law follows, and nothing else of the motion; fits use the measured one.
         reads: which number of a sensor the effect changes.
+        sides: whether the equations of both sides read its numbers.
     """
 
     chain: Callable[[dict[str, float], Mapping[str, Any]], None] | None = None
@@ -85,11 +86,12 @@ class Law:
     steady: Callable[[Any], Any] | None = None
     follows: Literal["wheel", "rotor"] | None = None
     reads: Literal["gain", "offset", "delay_s", "step", "lag_s"] | None = None
+    sides: bool = False
 
     @property
     def compiled(self) -> bool:
-        """Whether the kernels carry it out, rather than the chain or a sensor."""
-        return any(
+        """Whether the kernels execute it, rather than the chain or a sensor."""
+        return self.sides or any(
             function is not None
             for function in (
                 self.shape,

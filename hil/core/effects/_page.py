@@ -61,8 +61,8 @@ def _section(effect: Effect) -> str:
         unit = effect.least.of or effect.parameter(effect.acting()[0]).unit
         least = f"{effect.least.amount:g} {unit}".strip()
         lines.append(f" Named from {least} on: below, it is a correction.")
-    if effect.kin:
-        lines.append(f" Looks like: {', '.join(f'`{id_}`' for id_ in effect.kin)}.")
+    if effect.similar:
+        lines.append(f" Looks like: {', '.join(f'`{id_}`' for id_ in effect.similar)}.")
     if effect.source:
         lines.append(f" Source: {effect.source}.")
     return "".join(lines) + "\n"

@@ -32,5 +32,5 @@ EFFECT = Effect(
     least=Least(0.05, "samples"),
     law=Law(chain=_lag),
     probes=_probes,
-    kin=("dead_time", "channel_skew"),
+    similar=("dead_time", "channel_skew"),
 )

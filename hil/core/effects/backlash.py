@@ -9,7 +9,7 @@ touch; a coefficient of restitution e stands for the d with which rotor and whee
 stiffness k with a reduced inertia m, part at e times the speed at which they met:
 e = exp(-2·ζ/√(1 - ζ²)·atan(√(1 - ζ²)/ζ)), d = 2·ζ·√(k·m), for flanks that let go once they would pull
 (for ζ above 1, e below 0.135: √(ζ² - 1) and atanh). Damping strikes with the speed of approach: flanks that
-give back little strike hard. Below 0.1 nothing is told apart; what is given there acts as 0.1. With both a
+give back little strike hard. Below 0.1 nothing is distinguished; what is given there acts as 0.1. With both a
 damping and a restitution, the two dampings add.
 
 A damping that strikes from nothing is an idealisation. With `contact_depth_rad` that of the flanks counts
@@ -69,7 +69,7 @@ def damping_of(restitution: float, chain: Chain) -> float:
 
 
 def _prepare(chain: Chain, values: Values) -> Values:
-    """What the laws below are told, so that they need not ask, which takes longer.
+    """What the laws below get, so that they need not ask, which takes longer.
 
     In place of the restitution stands the least share of a damping that flanks have as they touch, of the
     depth its inverse in 1/rad, of one spring the shafts' own damping that is not whole at once, in N m s/rad.
@@ -122,7 +122,7 @@ def _leap(
 ) -> tuple[float, float]:
     """What flanks that meet or part within a step do beyond a torque that goes straight from end to end.
 
-    Torque leaps as they meet, and as flanks that pull part. What is told has the mean and the first moment
+    Torque leaps as they meet, and as flanks that pull part. The result has the mean and the first moment
     over the step of a torque that goes straight only while flanks touch.
     """
     half_gap = values[0]

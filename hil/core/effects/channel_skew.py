@@ -31,5 +31,5 @@ EFFECT = Effect(
     least=Least(0.05, "samples"),
     law=Law(reads="delay_s"),
     probes=_probes,
-    kin=("dead_time", "actuator_lag", "sensor_lag"),
+    similar=("dead_time", "actuator_lag", "sensor_lag"),
 )

@@ -190,7 +190,7 @@ EFFECT = Effect(
     sizes=("torque_nm", "stribeck_torque_nm", "offset_nm"),
     memory=Memory("1", "friction over its level, while it turns around"),
     probes=_probes,
-    kin=("running_resistance",),
+    similar=("running_resistance",),
     many_laws=True,
     derived=_derived,
 )

@@ -34,5 +34,5 @@ EFFECT = Effect(
     least=Least(0.05, "samples"),
     law=Law(chain=_later),
     probes=_probes,
-    kin=("actuator_lag", "channel_skew"),
+    similar=("actuator_lag", "channel_skew"),
 )

@@ -50,5 +50,5 @@ EFFECT = Effect(
     law=Law(tyre=_tyre, tyre_rate=_tyre_rate, remember=_remember),
     memory=Memory("rad/s", "lag of the dynamometer behind its vehicle model"),
     probes=_probes,
-    kin=("tyre_slip",),
+    similar=("tyre_slip",),
 )

@@ -65,6 +65,6 @@ EFFECT = Effect(
     needs=("two_inertia", "three_inertia"),
     law=Law(chain=_bushes),
     probes=_probes,
-    kin=("shaft_cubic_stiffness",),
+    similar=("shaft_cubic_stiffness",),
     derived=_derived,
 )

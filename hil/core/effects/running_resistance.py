@@ -52,5 +52,5 @@ EFFECT = Effect(
     law=Law(load=_load),
     sizes=("rolling_nm", "aero_nms2_rad2"),
     probes=_probes,
-    kin=("coulomb_friction", "viscous_drag"),
+    similar=("coulomb_friction", "viscous_drag"),
 )

@@ -33,5 +33,5 @@ EFFECT = Effect(
     least=Least(0.05, "samples"),
     law=Law(reads="lag_s"),
     probes=_probes,
-    kin=("channel_skew",),
+    similar=("channel_skew",),
 )

@@ -36,5 +36,5 @@ EFFECT = Effect(
     needs=("two_inertia", "three_inertia"),
     law=Law(shaft=_shaft),
     probes=_probes,
-    kin=("shaft_hysteresis",),
+    similar=("shaft_hysteresis",),
 )

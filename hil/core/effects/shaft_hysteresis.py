@@ -76,7 +76,7 @@ EFFECT = Effect(
     law=Law(shaft=_shaft, remember=_remember, steps=_steps),
     memory=Memory("rad", "twist of the hysteretic path"),
     probes=_probes,
-    kin=("coulomb_friction",),
+    similar=("coulomb_friction",),
     many_laws=True,
     derived=_derived,
 )

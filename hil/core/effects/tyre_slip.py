@@ -53,5 +53,5 @@ EFFECT = Effect(
     needs=("three_inertia",),
     law=Law(chain=_spring, tyre_rate=_relaxed),
     probes=_probes,
-    kin=("dyno_lag",),
+    similar=("dyno_lag",),
 )

@@ -33,5 +33,5 @@ EFFECT = Effect(
     ),
     law=Law(chain=_drag),
     probes=_probes,
-    kin=("running_resistance",),
+    similar=("running_resistance",),
 )

@@ -83,7 +83,7 @@ def write_frames(recording: Recording, path: Path) -> int:
         BadInputError: the recording is no MCAP file or has no frames, or `path` cannot be written.
         BenchError: the disk is full.
     """
-    from hil.core.recording._frame_logs import write_frame_log
+    from hil.core.recording._frame_log_writer import write_frame_log
 
     frames = read_frames(recording.source) if recording.source.suffix.lower() == ".mcap" else {}
     write_frame_log(frames, recording, path)

@@ -18,10 +18,9 @@ from typing import Any
 
 from hil.core.channels import CHANNELS, TIME, unit_of
 from hil.core.errors import BadInputError
-from hil.core.mistakes import Mistakes
-from hil.core.printable import printable
-from hil.core.suggestion import did_you_mean
-from hil.core.toml_file import parse_toml, toml_text
+from hil.core.errors.mistakes import Mistakes
+from hil.core.errors.wording import did_you_mean, printable
+from hil.core.files.toml_file import parse_toml, toml_text
 from hil.core.units import UnitError, conversion
 
 OPTION = "--columns"

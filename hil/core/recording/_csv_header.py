@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hil.core.channels import CHANNELS, TIME
-from hil.core.finding_list import repeated
+from hil.core.errors.wording import repeated
 from hil.core.recording._assigned import assigned, is_there, listing
 from hil.core.recording._column_map import OPTION, ColumnMap
 from hil.core.recording._csv_below_names import (

@@ -12,8 +12,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from hil.core.channels import unit_of
 from hil.core.errors import BadInputError
-from hil.core.file_format import FORMAT
 from hil.core.files import open_regular
+from hil.core.files.kinds import FORMAT
 from hil.core.recording._table import Event, Recording
 
 #: Name of the text where a format has named places: an attachment of MDF4, a key of Parquet's metadata.
@@ -97,7 +97,7 @@ def evidence_of(recording: Recording, table_sha256: str = "") -> str:
 
 
 def take_evidence(recording: Recording, text: str | bytes, where: str, table_sha256: str = "") -> None:
-    """Give a recording what `evidence_of` wrote of it; what does not fit is left out, and said in `damage`.
+    """Give a recording what `evidence_of` wrote of it; what does not fit is left out, and listed in `damage`.
 
     Args:
         where: name of the place the text comes from.

@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
 
-from hil.core.real_time import as_this_thread
+from hil.core.runtime.real_time import as_this_thread
 
 logger = logging.getLogger(__name__)
 
@@ -82,7 +82,7 @@ class GrowingFile:
             return
         if self._thread:
             self._thread.end()
-        with contextlib.suppress(OSError):  # of a full or broken disk it was told when it was written to
+        with contextlib.suppress(OSError):  # a full or broken disk was reported when it was written to
             _sync(self._raw.fileno())
         self._raw.close()
         if self._failure is None and self._thread and self._thread.failure:

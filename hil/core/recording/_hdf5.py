@@ -10,7 +10,7 @@ import numpy as np
 
 from hil.core.channels import CHANNELS, TIME
 from hil.core.errors import BadInputError
-from hil.core.extras import need
+from hil.core.errors.extras import need
 from hil.core.files import refuse_unless_regular
 from hil.core.recording._column_map import AS_NAMED, ColumnMap
 from hil.core.recording._foreign_table import Column, recording_of

@@ -53,22 +53,22 @@ class Findings:
 def damage(findings: Findings) -> list[str]:
     """One sentence for each thing that was lost or cannot be trusted."""
     whole = _samples_are_whole(findings)
-    said = _breaks(findings, whole)
-    said += [
+    found = _breaks(findings, whole)
+    found += [
         f"the attachment '{name}' is damaged (its checksum disagrees) and was left out"
         for name in findings.bad_attachments
     ]
-    said += _lost_names(findings)
+    found += _lost_names(findings)
     if findings.cut:
-        said.append(_cut(findings))
-    if not said and findings.data_end is None:
-        said.append("the mark at the end of the data is damaged: descriptive data may be wrong")
-    if not said and findings.data_end is False:
+        found.append(_cut(findings))
+    if not found and findings.data_end is None:
+        found.append("the mark at the end of the data is damaged: descriptive data may be wrong")
+    if not found and findings.data_end is False:
         agree = "; the samples agree with their own hash" if whole else ""
-        said.append(f"the checksum of the file disagrees: descriptive data may be wrong{agree}")
+        found.append(f"the checksum of the file disagrees: descriptive data may be wrong{agree}")
     if whole is False and not findings.breaks and not findings.cut:
-        said.append(_disagreement(findings))
-    return said
+        found.append(_disagreement(findings))
+    return found
 
 
 def lost_earlier(tables: dict[str, dict[str, str]]) -> list[str]:

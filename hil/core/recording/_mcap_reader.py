@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.can.frames import FrameBlock, empty_block
 from hil.core.errors import BadInputError
 from hil.core.files import open_regular
-from hil.core.frames import FrameBlock, empty_block
 from hil.core.recording import _mcap_records as mcap
 from hil.core.recording import _schema
 from hil.core.recording._mcap_damage import Findings, damage, lost_earlier

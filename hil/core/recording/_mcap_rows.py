@@ -113,7 +113,7 @@ class RowReader:
             raise BadInputError(
                 "was changed while it was being read",
                 where=str(self.path),
-                fix="read it when nobody writes it",
+                fix="read it when no one writes it",
             )
         return rows
 

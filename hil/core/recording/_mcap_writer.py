@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.can.frames import FrameBlock, joined
 from hil.core.errors import BenchError
 from hil.core.files import full_disk_in_words
-from hil.core.frames import FrameBlock, joined
 from hil.core.recording import _schema
 from hil.core.recording._growing_file import GrowingFile
 from hil.core.recording._mcap_damage import CHANNELS_TABLE

@@ -14,11 +14,11 @@ import numpy as np
 from hil.core.channels import CHANNELS, INPUT, TIME, unit_of
 from hil.core.errors import BadInputError
 from hil.core.files import refuse_unless_regular, replacing
-from hil.core.mdf_file import open_mdf
 from hil.core.recording._column_map import AS_NAMED, ColumnMap
 from hil.core.recording._evidence import EVIDENCE, evidence_of, has_evidence, take_evidence
 from hil.core.recording._foreign_table import Column, recording_of
 from hil.core.recording._table import BLOCK, Array, Recording, refuse_too_large
+from hil.core.recording.mdf_file import open_mdf
 
 _EVENT_TICKS = 1_000_000  # in a second
 _MASTERS = (2, 3)  # channel types of the standard: time stamps, stored or counted

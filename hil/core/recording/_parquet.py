@@ -11,8 +11,8 @@ import pyarrow.parquet as pq
 
 from hil.core.channels import CHANNELS, TIME, unit_of
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import repeated
 from hil.core.files import refuse_unless_regular, replacing
-from hil.core.finding_list import repeated
 from hil.core.recording._column_map import AS_NAMED, ColumnMap
 from hil.core.recording._evidence import EVIDENCE, evidence_of, has_evidence, take_evidence
 from hil.core.recording._foreign_table import Column, recording_of

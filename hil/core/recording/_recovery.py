@@ -132,9 +132,9 @@ class _Copy:
             case _:
                 self._take_messages(record)
 
-    def finish(self, told: dict[str, str]) -> None:
-        """Close the file with `told`, and with number and hash of the samples that are in it."""
-        self._file.describe(RECOVERY_TABLE, told)
+    def finish(self, description: dict[str, str]) -> None:
+        """Close the file with `description`, and with number and hash of the samples that are in it."""
+        self._file.describe(RECOVERY_TABLE, description)
         channels = {"sha256": self._hash.hexdigest(), "samples": str(self._samples)}
         self._file.describe(CHANNELS_TABLE, channels)
         self._file.finish()

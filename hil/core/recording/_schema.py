@@ -12,8 +12,8 @@ import numpy.typing as npt
 from google.protobuf import descriptor_pb2
 from google.protobuf.message import DecodeError
 
-from hil.core.finding_list import repeated
-from hil.core.frames import FRAME, FrameBlock
+from hil.core.can.frames import FRAME, FrameBlock
+from hil.core.errors.wording import repeated
 
 # Tags of CanFrames' fields, all of wire type 2 (length, then bytes)
 _FRAME_TAGS = {

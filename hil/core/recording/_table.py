@@ -138,7 +138,7 @@ class Recording:
 
     @property
     def samples_sha256(self) -> str:
-        """SHA-256 of the samples as they were recorded, '' if nobody wrote it down."""
+        """SHA-256 of the samples as they were recorded, '' if no one wrote it down."""
         return self.metadata.get("channels", {}).get("sha256", "")
 
     def rows(self, first: int, last: int, names: Collection[str] | None = None) -> dict[str, Array]:

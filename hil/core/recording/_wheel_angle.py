@@ -23,7 +23,7 @@ def with_wheel_angle(recording: Recording, spans_s: Sequence[tuple[float, float]
 
 
 def _angles_at(recording: Recording, samples: Sequence[int]) -> list[float]:
-    """Angles at samples by number, each block's sum begun with that of the blocks before it."""
+    """Angles at samples by number, each block's sum started with that of the blocks before it."""
     angles = dict.fromkeys(samples, 0.0)
     last_s, last, angle = np.zeros(0), np.zeros(0), 0.0
     for first, rows in recording.blocks((TIME, _SPEED)):

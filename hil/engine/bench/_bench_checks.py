@@ -11,9 +11,8 @@ import can
 
 from drivers import DynoTable, RamTable, RmcuTable, read_rmcu
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import closest, did_you_mean, is_printable, printable
 from hil.core.files import is_file
-from hil.core.printable import is_printable, printable
-from hil.core.suggestion import closest, did_you_mean
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.bus_identity import identity_of
 from hil.engine.bench.bus_settings import adapter_mistakes, slows_down

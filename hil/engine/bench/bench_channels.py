@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from drivers import Stream
 from hil.core.channels import TIME
 from hil.core.errors import BadInputError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.computed_channels import TWIST
 from hil.engine.bench.range_scan import unit_of

@@ -12,13 +12,12 @@ from pydantic import ValidationError
 
 from drivers import DeviceTable
 from hil.core.errors import BadInputError
-from hil.core.file_kind import refuse_other_kind
-from hil.core.mistakes import keyed, refuse
-from hil.core.printable import is_printable, printable
-from hil.core.shipped import shipped_file
-from hil.core.suggestion import did_you_mean
-from hil.core.table_mistakes import mistakes_of
-from hil.core.toml_file import parse_toml, toml_text
+from hil.core.errors.mistakes import keyed, refuse
+from hil.core.errors.table_mistakes import mistakes_of
+from hil.core.errors.wording import did_you_mean, is_printable, printable
+from hil.core.files.kinds import refuse_other_kind
+from hil.core.files.shipped import shipped_file
+from hil.core.files.toml_file import parse_toml, toml_text
 from hil.engine.bench._bench_checks import contradictions, device_mistakes, file_mistakes, unprintable
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.device_kinds import device_tables
@@ -26,13 +25,13 @@ from hil.engine.bench.device_kinds import device_tables
 DEFAULT_BENCH = "sim"
 
 _FIX = "see docs/how-to/bench-file.md"
-_LOADED = ("text", "source")  # fields of the loaded bench that are no keys of the file
+LOADED = ("text", "source")  # fields of the loaded bench that are no keys of the file
 
 
 def load_bench(name_or_path: str | Path) -> BenchFile:
     """Read a bench file by path, or one of `benches/` by name.
 
-    The files that it names are read too: what is wrong with the DBC or the EDS is said now.
+    The files that it names are read too: what is wrong with the DBC or the EDS is stated now.
 
     Raises:
         BadInputError: not found, or all that is wrong with it: file, keys, values, and what to do.
@@ -53,7 +52,7 @@ def bench_from_dict(data: dict[str, Any], text: str, path: Path) -> BenchFile:
         BadInputError: all that is wrong with it.
     """
     where = printable(path, 200)
-    unknown = [f"{key}: unknown key" for key in _LOADED if key in data]
+    unknown = [f"{key}: unknown key" for key in LOADED if key in data]
     _refuse(where, [*unprintable(data), *unknown], text)
     base = path.resolve().parent
     devices, mistakes = device_tables(data)
@@ -102,7 +101,7 @@ def _model_of(data: dict[str, Any], base: Path) -> Path | None:
         return None
     try:
         return shipped_file(model, "model", base)
-    except BadInputError:  # told among the bench file's other mistakes
+    except BadInputError:  # reported among the bench file's other mistakes
         return base / model
 
 
@@ -111,7 +110,7 @@ def _refuse(where: str, mistakes: list[str], text: str) -> None:
 
 
 def _is_of(mistakes_of: str, of_devices: list[str]) -> bool:
-    """Whether it is of a device's table that has mistakes: its kind has told them."""
+    """Whether it is of a device's table that has mistakes: its kind has reported them."""
     wrong = {_device(keyed(mistake).key) for mistake in of_devices}
     return _device(keyed(mistakes_of).key) in wrong
 

@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Iterator
 
 from hil.core.errors import BenchError
-from hil.core.locks import HeldError, lock_named
+from hil.core.files.locks import HeldError, lock_named
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.bus_identity import identity_of, port_of_any_adapter
 

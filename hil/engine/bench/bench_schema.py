@@ -6,11 +6,10 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from hil.core.model.schema import DRAFT
+from hil.engine.bench.bench_file import LOADED
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.device_kinds import DEFAULT_KINDS, KINDS
-
-_DRAFT = "https://json-schema.org/draft/2020-12/schema"
-_LOADED = ("text", "source")
 
 
 def bench_schema() -> dict[str, Any]:
@@ -21,7 +20,7 @@ def bench_schema() -> dict[str, Any]:
     """
     definitions: dict[str, Any] = {}
     schema = _schema_of(BenchFile, definitions)
-    for key in _LOADED:
+    for key in LOADED:
         schema["properties"].pop(key)
     kinds = {}
     for kind in KINDS.names():
@@ -33,7 +32,7 @@ def bench_schema() -> dict[str, Any]:
     schema["properties"]["devices"]["additionalProperties"] = _by_kind(kinds, "")
     definitions["Day"] = {"type": "string", "format": "date", "description": "last valid day, as 2027-06-30"}
     schema["properties"]["calibration"]["additionalProperties"] = {"$ref": "#/$defs/Day"}
-    return {"$schema": _DRAFT, **schema, "title": "Bench file", "$defs": definitions}
+    return {"$schema": DRAFT, **schema, "title": "Bench file", "$defs": definitions}
 
 
 def _by_kind(kinds: dict[str, dict[str, Any]], default: str) -> dict[str, Any]:

@@ -9,8 +9,8 @@ from typing import Annotated, Any, Self
 from pydantic import BeforeValidator, Field, SerializeAsAny, model_validator
 
 from drivers import DeviceTable, File, LoadTable, Name
-from hil.core.file_format import FORMAT, FormatNumber
-from hil.core.printable import LONGEST_NAME
+from hil.core.errors.wording import LONGEST_NAME
+from hil.core.files.kinds import FORMAT, FormatNumber
 from hil.engine.bench.limit_tables import Bound, Interlock, Limit, Limits, Table
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from hil.engine.bench.bench_tables import BenchFile, Bus
 
-_IN_PROCESS = ("hil-sim", "virtual")  # nobody outside of the process can reach them
+_IN_PROCESS = ("hil-sim", "virtual")  # no one outside of the process can reach them
 #: Options of python-can's that say which of several adapters is meant; all others only say how it is opened.
 _WHICH = (
     *("serial", "serial_number", "unique_hardware_id", "device_id", "device", "dev_id"),

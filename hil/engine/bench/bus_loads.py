@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from drivers import most_bits_on_the_wire
-from hil.core.frames import FrameBlock
+from hil.core.can.frames import FrameBlock
 from hil.core.result import BusLoad
 
 _WINDOW_S = 0.1

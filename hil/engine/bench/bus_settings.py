@@ -8,7 +8,7 @@ from typing import Any
 import can
 
 from drivers import CanSettings
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.engine.bench.bench_tables import Bus, Timing
 
 # python-can's own interfaces by what their classes take; others swallow it in silence.
@@ -25,7 +25,7 @@ _LINUX_SETS_IT = (
 )
 
 
-#: How an interface is told to listen only: not even to acknowledge. SocketCAN's is set by `ip link`.
+#: How an interface is set to listen only: not even to acknowledge. SocketCAN's is set by `ip link`.
 _LISTENING: dict[str, dict[str, Any]] = {
     "kvaser": {"driver_mode": False},
     "nixnet": {"listen_only": True},
@@ -38,7 +38,7 @@ _LISTENING: dict[str, dict[str, Any]] = {
 
 
 def listens_only(bus: Bus) -> bool:
-    """Whether the adapter can be told to listen only."""
+    """Whether the adapter can be set to listen only."""
     return bus.interface in _LISTENING
 
 
@@ -46,7 +46,7 @@ def can_settings(name: str, bus: Bus, *, listen_only: bool = False) -> CanSettin
     """What opens the bus.
 
     Args:
-        listen_only: that the adapter acknowledges nothing, if it can be told so.
+        listen_only: that the adapter acknowledges nothing, if it can be reported so.
 
     Raises:
         ValueError: no such bit timing can be made.

@@ -7,7 +7,7 @@ from collections.abc import Collection
 import numpy as np
 
 from drivers import bits_on_the_wire
-from hil.core.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
 from hil.engine.bench.bench_tables import BenchFile
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime
 
 from hil.core.errors import BadInputError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.core.result import AcceptedExpiry
 from hil.engine.bench.bench_tables import BenchFile
 
@@ -21,10 +21,10 @@ def accepted_expiry(bench: BenchFile, today: datetime.date, accepted: str) -> Ac
     """Who answers for sensors whose calibration has run out; None if none has.
 
     Args:
-        accepted: "NAME: reason"; '': nobody does.
+        accepted: "NAME: reason"; '': no one does.
 
     Raises:
-        BadInputError: a calibration has run out and nobody answers for it, or name or reason is missing.
+        BadInputError: a calibration has run out and no one answers for it, or name or reason is missing.
     """
     by, _, reason = (part.strip() for part in accepted.partition(":"))
     if accepted and not (by and reason):

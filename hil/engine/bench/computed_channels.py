@@ -14,8 +14,8 @@ from typing import Protocol
 import numpy as np
 
 from drivers import TICK_S, BusLoop, Samples, Stream, bits_on_the_wire
-from hil.core.compiled import compiled
-from hil.core.frames import ERROR_FRAME, FrameBlock
+from hil.core.can.frames import ERROR_FRAME, FrameBlock
+from hil.core.runtime.compiled import compiled
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.limit_tables import TwistTable
 from test_plans import Array
@@ -108,7 +108,7 @@ class ShaftTwist:
 class TorqueError:
     """What the inverter says that it gives, less what it was asked for, of the same sample.
 
-    It is told late by the inverter's own lag: a limit of it needs a persistence longer than that.
+    It is reported late by the inverter's own lag: a limit of it needs a persistence longer than that.
     """
 
     def __init__(self) -> None:

@@ -9,12 +9,12 @@ from typing import Any
 from pydantic import ValidationError
 
 from drivers import OWN_KINDS, DeviceTable, LoadTable
+from hil.core.can.symbol_files import LARGEST_BYTES
 from hil.core.errors import BadInputError
+from hil.core.errors.table_mistakes import mistakes_of
+from hil.core.errors.wording import printable
 from hil.core.files import read_bytes
-from hil.core.printable import printable
 from hil.core.recording import DEVICE
-from hil.core.symbol_files import LARGEST_BYTES
-from hil.core.table_mistakes import mistakes_of
 from test_plans.registry import Registry
 
 #: Kinds of device by name; those of other packages are entry points of `hil.devices`.

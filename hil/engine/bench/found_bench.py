@@ -22,7 +22,7 @@ def found_bench(folders: Iterable[Path]) -> Path | None:
 
 
 def refuse_hardware(found: Path, option: str = "--bench") -> None:
-    """Refuse to drive hardware that nobody has named.
+    """Refuse to drive hardware that no one has named.
 
     Raises:
         BadInputError: the bench file that was found describes hardware, or cannot be used.

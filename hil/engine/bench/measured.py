@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from drivers import BusLoop, Device, Finding, LogWire
-from hil.core.clock import WallClock
 from hil.core.errors import BadInputError, BenchError
+from hil.core.runtime.clock import WallClock
 from hil.engine.bench.bench import connections_of, open_bench
 from hil.engine.bench.bench_channels import refuse_channels
 from hil.engine.bench.bench_tables import BenchFile

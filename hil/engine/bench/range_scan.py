@@ -8,8 +8,8 @@ import numpy as np
 
 from drivers import Samples, Stream
 from hil.core.channels import CHANNELS
-from hil.core.compiled import compiled
 from hil.core.result import LimitResult
+from hil.core.runtime.compiled import compiled
 from hil.engine.bench.ranges import Range, slope_unit
 from test_plans import Array
 
@@ -135,9 +135,9 @@ def _unit(stream: Stream, place: int, range_: Range) -> str:
     return unit if range_.slope_s is None else slope_unit(unit)
 
 
-def unit_of(channel: str, said: str) -> str:
+def unit_of(channel: str, stated: str) -> str:
     """A channel's unit; of one that is not ours what its device says."""
-    return said or (CHANNELS[channel].unit if channel in CHANNELS else "")
+    return stated or (CHANNELS[channel].unit if channel in CHANNELS else "")
 
 
 @compiled

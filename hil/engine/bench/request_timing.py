@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from drivers import Device, Wire
 from drivers.echoes import Echo
-from hil.core.clock import Clock
 from hil.core.result import Lateness, PeriodicRequests
+from hil.core.runtime.clock import Clock
 
 Times: TypeAlias = npt.NDArray[np.float64]
 #: Takes name, bench time (s) and the times meant, sent and seen (NaN: not seen), s, shape (3, n).

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from drivers import DynoTable, RamTable, RmcuTable
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import printable
 from hil.core.model import Model, refuse_without_vehicle
-from hil.core.printable import printable
 from hil.engine.bench.bench_tables import BenchFile
 from hil.plant import refuse_too_stiff
 from sim_backend.bench import (

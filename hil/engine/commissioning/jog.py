@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.errors import BadInputError
+from hil.core.errors.mistakes import line_of
 from hil.core.recording import Recording, read_recording
 from hil.core.result import Segment
-from hil.core.toml_lines import line_of
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.ipc.ipc import Progress, RunOutcome, RunRequest, Terminal
 from hil.engine.run.run import run_plan
@@ -168,7 +168,7 @@ def jog(request: JogRequest) -> JogOutcome:
     """Turn the axle as a run does, with its limits, its recording and its safe state, and look at the signs.
 
     Raises:
-        BadInputError: nothing was moved: a senseless torque, nobody to ask, a calibration that has run out.
+        BadInputError: nothing was moved: a senseless torque, no one to ask, a calibration that has run out.
         BenchError: nothing was moved: the bench does not come up.
     """
     bench = jog_bench(request.bench, request.torque_nm)
@@ -189,7 +189,7 @@ def jog(request: JogRequest) -> JogOutcome:
 
 
 def signs_of(recording: Recording, segments: Sequence[Segment], bench: BenchFile) -> Signs:
-    """What the sensors said in a jog, also in one that was cut off."""
+    """What the sensors read in a jog, also in one that was cut off."""
     found: list[Sign] = []
     at = {segment.id: segment for segment in segments}
     if DRIVEN in at:
@@ -234,8 +234,8 @@ def _findings(signs: Sequence[Sign], bench: BenchFile) -> Iterator[SignFinding]:
         ("motor torque", "the RMCU's torque request", "rmcu.dbc", (*_SHAFTS, *_SPEEDS)),
         ("dynos forwards", "'Target velocity' of the dynos", "dyno.eds", _SPEEDS),
     ):
-        told = {sign.channel: sign.verdict for sign in signs if sign.test == test}
-        if told and all(told.get(name) == "wrong" for name, _, _ in names):
+        verdicts = {sign.channel: sign.verdict for sign in signs if sign.test == test}
+        if verdicts and all(verdicts.get(name) == "wrong" for name, _, _ in names):
             blamed.add(test)
             what = f"{test}: every sensor says that the axle turned backwards"
             fix = f"invert the sign of {culprit} (its factor in the file), or check phases and wiring"

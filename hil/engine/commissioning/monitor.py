@@ -12,9 +12,9 @@ import numpy as np
 
 from drivers import BusLoop, Device, MotorControl, Samples
 from drivers.linux_links import link_of
+from hil.core.can.frames import FrameBlock
 from hil.core.errors import BadInputError, BenchError, InterruptError
-from hil.core.frames import FrameBlock
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.engine.bench.bench import bench_clock, connections_of, open_wire
 from hil.engine.bench.bench_tables import BenchFile, Bus
 from hil.engine.bench.bus_settings import listens_only
@@ -79,7 +79,7 @@ def monitor(request: MonitorRequest) -> View:
     """Listen until the time is over or somebody asks to stop; the view of the whole time.
 
     Raises:
-        BadInputError: a bench that computes its buses: nobody is on them but who computes them.
+        BadInputError: a bench that computes its buses: no one is on them but who computes them.
         BenchError: no bus can be opened, or one fails.
     """
     file = request.bench

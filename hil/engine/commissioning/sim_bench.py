@@ -13,8 +13,8 @@ import tomli_w
 from drivers import PanelTable, RamTable, RmcuTable
 from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError, BenchError
+from hil.core.errors.wording import printable
 from hil.core.model import Model, load_model, model_from_dict, model_to_toml
-from hil.core.printable import printable
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.simulable import dyno_of, ram_of, rmcu_of, simulated
 from hil.engine.stop.stopping import StopRequest
@@ -39,7 +39,7 @@ _HIGHEST_PORT = 65535
 
 @dataclass(frozen=True)
 class Serving:
-    """What is served: told before the first millisecond passes.
+    """What is served: reported before the first millisecond passes.
 
     Attributes:
         bench_file: text of the bench file that connects to it.
@@ -124,9 +124,9 @@ def serve(request: SimBenchRequest) -> Served:
         ports = {name: port.port for name, port in panels.items()}
         text = bench_text(bench, tables, request.time_scale, ports)
         added = {_effect_and_parameter(name)[0] for name in request.hidden}
-        told = tuple(f"{use.id}: {_numbers(use.values)}" for use in model.effects if use.id in added)
+        added_texts = tuple(f"{use.id}: {_numbers(use.values)}" for use in model.effects if use.id in added)
         left_out = tuple(name for name in bench.devices if not _is_served(bench, name))
-        request.ready(Serving(text, tables, told, left_out))
+        request.ready(Serving(text, tables, added_texts, left_out))
         server.serve(lambda: request.stop.times > 0, request.for_s)
         frames = {roles[role]: (sent, received) for role, (sent, received) in server.frames.items()}
         lost = {name: servers[role].lost for role, name in roles.items()}

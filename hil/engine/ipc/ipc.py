@@ -13,9 +13,9 @@ from typing import Protocol
 
 from hil.core.errors import HilError
 from hil.core.model import Model
-from hil.core.other_process import OtherProcess
 from hil.core.recording import Recording
 from hil.core.result import RunResult
+from hil.core.runtime.other_process import OtherProcess
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.engine.stop.stopping import StopRequest
@@ -38,7 +38,7 @@ class Analysis(Protocol):
         ...
 
     def kill(self) -> None:
-        """Nobody wants it any more."""
+        """No one wants it any more."""
         ...
 
 
@@ -79,7 +79,7 @@ class Watched(Protocol):
     """Who watches from another process that the loop turns. Nothing here waits."""
 
     def turned(self) -> str:
-        """The loop has turned once more; says why nobody watches any more, '' if somebody does."""
+        """The loop has turned once more; says why no one watches any more, '' if somebody does."""
         ...
 
     def concluded(self, *, armed: bool, unsafe: Sequence[str]) -> None:
@@ -113,7 +113,7 @@ class RunOutcome:
 
 @dataclass
 class RunRequest:
-    """A run to be carried out.
+    """A run to be executed.
 
     Data: `plan`, `bench`, `out`, `model`, `operator`, `confirmed_by` (who confirmed every prompt beforehand),
     `hazard_confirmed_by` (who takes a hazardous plan upon them), `accept_expired` ("NAME: reason" of who
@@ -121,7 +121,7 @@ class RunRequest:
     place, which are removed once nothing about plan and bench can keep this run from beginning.
 
     Calls to who asked for the run, with data and for data: `terminal` shows texts to the operator and gives
-    what was typed (None: nobody can be asked); `progress` is told the share that is done and what is going
+    what was typed (None: no one can be asked); `progress` gets the share that is done and what is going
     on; `analyse` begins the analysis of a step of the plan, while the bench is kept alive (None: in a process
     of its own on hardware, at once in virtual time).
 

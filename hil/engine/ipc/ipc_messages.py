@@ -67,7 +67,7 @@ class ErrorData(_Data):
 
 
 class RunAsked(_Data):
-    """The run to be carried out; the fields are those of `RunRequest`, files as their texts."""
+    """The run to be executed; the fields are those of `RunRequest`, files as their texts."""
 
     kind: Literal["run"] = "run"
     plan: str
@@ -142,7 +142,7 @@ class Progressed(_Data):
 class OperatorText(_Data):
     """A text for the operator."""
 
-    kind: Literal["told"] = "told"
+    kind: Literal["message"] = "message"
     text: str
 
 

@@ -55,7 +55,7 @@ class IpcPipe:
                     written = os.write(self._writing, bytes(self._waiting[:_AT_ONCE]))
                 except BlockingIOError:
                     return
-                except OSError:  # nobody reads any more
+                except OSError:  # no one reads any more
                     self.gone = True
                     return
                 del self._waiting[:written]

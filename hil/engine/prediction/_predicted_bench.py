@@ -19,6 +19,7 @@ from hil.core.vehicle import VehicleAndRoad
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.simulable import rmcu_of
 from hil.engine.prediction._predicted_wire import PredictedWire, wire_of
+from hil.engine.run.arming import LISTEN_S
 from hil.plant import LONGEST_STEP_S
 from hil.plant.closed_loop import SIDES, TICK_S, ClosedLoop, Noise
 from hil.plant.closed_loop import drive as D
@@ -34,7 +35,6 @@ _WATCH_OBJECTS = 2  # heartbeat and watch on the host's, each side
 _SYNC_OBJECTS = 2
 _STATUS_EVERY = 10  # samples after which a drive shows its state
 _ACCELERATION_UNIT_RAD_S2 = 1e-4
-_LISTEN_S = 0.2
 _MODES: dict[Quantity, int] = {"motor_torque": M.TORQUE, "driving_torque": M.DRIVING_FORCE}
 _STATES = ("off", "torque", "driving_force", "fault")
 
@@ -60,7 +60,7 @@ class PredictedLoop:
         return self.closed.rows[last - 1 : last]
 
     def run_for(self, duration_s: float, until: Callable[[], bool] = lambda: False) -> bool:  # noqa: ARG002
-        """Let time pass; nobody holds a prediction."""
+        """Let time pass; no one holds a prediction."""
         self.run(round(duration_s / TICK_S))
         return True
 
@@ -99,7 +99,7 @@ class PredictedRmcu:
 
     @property
     def state(self) -> str:
-        """What the RMCU said last."""
+        """The RMCU's last status."""
         return _STATES[int(self._loop.newest[0, T.STATE])]
 
     def is_safe(self) -> bool:
@@ -179,7 +179,7 @@ class PredictedDyno:
         self._see_status()
 
     def hold_speed(self, speed_rad_s: float) -> None:
-        """Ramp both wheels to a speed; returns when both drives have been told."""
+        """Ramp both wheels to a speed; returns when both drives have been reported."""
         closed = self._loop.closed
         for side in SIDES:
             closed.drive_mode(side, D.SPEED)
@@ -246,11 +246,11 @@ class PredictedBench:
         self.loop = PredictedLoop(closed)
         self.rmcu = PredictedRmcu(self.loop, file, self.wire)
         self.dyno = PredictedDyno(self.loop, file, self.wire)
-        self.loop.run_for(_LISTEN_S)
+        self.loop.run_for(LISTEN_S)
         self.dyno.come_up()
         self.began = closed.samples
         self._peaks = dict.fromkeys(self.wire.rounding.channels, 0.0)
-        self.loop.run_for(_LISTEN_S)
+        self.loop.run_for(LISTEN_S)
         self.rmcu.make_safe()
         self.dyno.enable(file.dyno.speed_ramp_m_s2 / file.vehicle.wheel_radius_m)
 

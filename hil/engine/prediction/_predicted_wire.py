@@ -7,9 +7,9 @@ from itertools import accumulate
 from typing import Any
 
 from drivers import TICK_S, read_dyno, read_rmcu
-from hil.core.dbc import Dbc
-from hil.core.frames import longest_frame_s
-from hil.core.signals import FrameLayout
+from hil.core.can.dbc import Dbc
+from hil.core.can.frames import longest_frame_s
+from hil.core.can.signals import FrameLayout
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.simulable import dyno_of, rmcu_of
 from hil.plant.closed_loop import Wire

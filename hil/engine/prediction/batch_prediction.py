@@ -69,7 +69,7 @@ class BatchPrediction:
         runs_before, controllers = self._run_before(here, model, noise, seed), {**here.controllers, **tried}
         with tempfile.TemporaryDirectory() as folder:
             run = runs_before.continued(here.room, Path(folder), controllers)
-            run.carry_out(here.after)
+            run.execute(here.after)
         if len(run.rows) > len(here.room):
             samples, columns = run.rows.shape
             here.room = np.zeros((samples + samples // 8, columns))  # others may take a little longer
@@ -82,7 +82,7 @@ class BatchPrediction:
             step_s = _longest_step_s(model)
             bench = PredictedBench(self.bench, model, self._noise(noise, seed), step_s, here.wire)
             run = PredictedRun(bench, Path(), self.channels, here.controllers)
-            run.carry_out(here.before)
+            run.execute(here.before)
             here.runs_before[key] = run, model  # the model, so that no other gets its id
             if len(here.runs_before) > _CARS_KEPT:
                 here.runs_before.popitem(last=False)
@@ -112,7 +112,7 @@ class _Here:
     """What a process knows of its trials.
 
     Steps `before` one loads the file that is tried, or analyses, are the same for every controller; the rest
-    are `after`. `begun` are runs that have carried the first of them out, with their models, by car; `room`
+    are `after`. `started` are runs that have executed the first of them, with their models, by car; `room`
     is for what is measured, the same for every run.
     """
 
@@ -130,7 +130,7 @@ class _Here:
         walk, steps = _Loaded(bench), (*plan.steps, *plan.finally_)
         same = 0
         for step in steps:
-            step.carry_out(walk)
+            step.execute(walk)
             same += file not in walk.controllers and not walk.analyses
         return cls(wire_of(bench), walk.controllers, steps[:same], steps[same:])
 
@@ -143,7 +143,7 @@ def controller_files(plan: Plan, bench: BenchFile) -> tuple[Path, ...]:
     """
     walk = _Loaded(bench)
     for step in (*plan.steps, *plan.finally_):
-        step.carry_out(walk)
+        step.execute(walk)
     return tuple(walk.controllers)
 
 

@@ -13,7 +13,7 @@ import tomli_w
 
 from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError
-from hil.core.suggestion import did_you_mean
+from hil.core.errors.wording import did_you_mean
 from hil.engine.bench.bench_file import bench_from_dict
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.ranges import limits_of_channels

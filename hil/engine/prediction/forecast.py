@@ -66,7 +66,7 @@ def forecast(plan: Plan, bench: BenchFile) -> Forecast:
             predicted, Path(folder), each_segment=judgement.take, keeps_rows=_analyses(plan, bench)
         )
         begin_s = predicted.loop.clock.now_s()
-        run.carry_out((*plan.steps, *plan.finally_))
+        run.execute((*plan.steps, *plan.finally_))
         duration_s = predicted.loop.clock.now_s() - begin_s
         found = run.ended()
     limits = limits_of_channels(bench.limits)

@@ -1,4 +1,4 @@
-"""A plan carried out on a bench that is computed, not talked to: what a run would record, in a fraction of
+"""A plan executed on a bench that is computed, not talked to: what a run would record, in a fraction of
 its time.
 
 The engine's own conductor does it, with a predicted bench in place of drivers and wire.
@@ -25,8 +25,8 @@ from hil.engine.bench.bench import Bench
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.prediction._predicted_bench import PredictedBench
 from hil.engine.prediction._predicted_wire import PredictedWire
-from hil.engine.run.conductor import BenchConductor, release_from
 from hil.engine.run.recorder import Recorder
+from hil.engine.run.step_execution import BenchConductor, release_from
 from hil.plant import LONGEST_STEP_S
 from hil.plant.closed_loop import TICK_S, Noise
 from test_plans import Array, Plan, PlannedSegment, Quantity, Step
@@ -66,7 +66,7 @@ def predict(
 ) -> Prediction:
     """Carry `plan` out on the simulated bench of `bench` and `model`, without its wire and its noise.
 
-    Nobody is asked at operator prompts, and no limit on measured values trips.
+    No one is asked at operator prompts, and no limit on measured values trips.
 
     Args:
         controllers: what is loaded in place of files that the plan loads.
@@ -83,7 +83,7 @@ def predict(
         run = PredictedRun(
             PredictedBench(bench, model, noise, longest_step_s, wire), Path(directory), channels, controllers
         )
-        run.carry_out((*plan.steps, *plan.finally_))
+        run.execute((*plan.steps, *plan.finally_))
         return run.ended()
 
 
@@ -115,14 +115,14 @@ class PredictedRun:
         if not keeps_rows:
             bench.loop.after_block = self._forget_what_is_over
 
-    def carry_out(self, steps: Iterable[Step]) -> None:
+    def execute(self, steps: Iterable[Step]) -> None:
         """Carry steps out, from where the run stands.
 
         Raises:
             HilError: the run would fail.
         """
         for step in steps:
-            step.carry_out(self._conductor)
+            step.execute(self._conductor)
 
     def continued(self, room: Array, out: Path, controllers: Mapping[Path, Controller]) -> PredictedRun:
         """A run of its own that goes on from here, in folder `out`; its rows stand in `room`."""

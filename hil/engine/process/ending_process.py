@@ -1,7 +1,7 @@
 """Whether a process is about to be no more, before its pipes say so.
 
 They close once the system has taken its memory apart: 10 to 80 ms for the 200 MB of a command on a busy
-machine, in which a bench would be driven for nobody.
+machine, in which a bench would be driven for no one.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ _STATE, _FLAGS, _PENDING = 0, 6, 28
 
 
 def is_ending(process: int) -> bool:
-    """Whether a process has been killed, is ending, or has ended and nobody has asked how.
+    """Whether a process has been killed, is ending, or has ended and no one has asked how.
 
     Takes some 30 microseconds. False where the system does not tell (not Linux), and of a process of which
     nothing is left: its pipes have closed by then.

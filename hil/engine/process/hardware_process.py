@@ -9,6 +9,7 @@ import traceback
 from collections.abc import Sequence
 from pathlib import Path
 
+from hil.core.conventions import PACKAGES
 from hil.core.errors import BenchError, HilError
 from hil.engine.ipc.ipc import analysed_apart
 from hil.engine.ipc.ipc_data import ended_of, request_of
@@ -31,8 +32,7 @@ from hil.engine.process.ending_process import is_ending
 from hil.engine.run.run import run_plan
 from hil.engine.stop.stopping import StopRequest, hear_signals
 
-_PACKAGES = ("hil", "drivers", "sim_backend", "test_plans", "reports")
-_ASKED_WITHIN_S = 60.0
+ASKED_WITHIN_S = 60.0
 #: How long its last words may wait for a command that does not read, s.
 LAST_WORDS_S = 10.0
 
@@ -40,7 +40,7 @@ logger = logging.getLogger(__name__)
 
 
 def hold_hardware(pipe: IpcPipe) -> str:
-    """Carry out the run that is asked for at the other end; what nobody there has heard of how it ended.
+    """Execute the run that is asked for at the other end; what no one there has heard of how it ended.
 
     Asking to stop counts as often as signals came here or the command tells of, whichever is more: a terminal
     or a service manager may tell both.
@@ -85,7 +85,7 @@ class _Command:
 
     def asked(self) -> RunAsked | None:
         """The run that is asked for; None if the command is gone before it has asked."""
-        until_s = time.monotonic() + _ASKED_WITHIN_S
+        until_s = time.monotonic() + ASKED_WITHIN_S
         found = None
         while found is None and not self._pipe.gone and time.monotonic() < until_s:
             self._pipe.wait(1.0)
@@ -97,7 +97,7 @@ class _Command:
         return found
 
     def turned(self) -> str:
-        """Say that the loop has turned, and take what the command has said."""
+        """Report that the loop has turned, and take what the command has sent."""
         self._pipe.send_if_idle(Turned())
         for message in self._pipe.fetch():
             self._take(message)
@@ -112,7 +112,7 @@ class _Command:
         self._pipe.send(Concluded(armed=armed, unsafe=tuple(unsafe)))
 
     def progress(self, share: float, text: str) -> None:
-        """Say how far the run is, unless nobody listens."""
+        """Say how far the run is, unless no one listens."""
         if not self._pipe.crowded:
             self._pipe.send(Progressed(share=share, text=text))
 
@@ -144,7 +144,7 @@ class _LogLines(logging.Handler):
         self._pipe = pipe
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Send it, unless nobody listens."""
+        """Send it, unless no one listens."""
         if self._pipe.crowded:
             return
         trace = logging.Formatter().formatException(record.exc_info) if record.exc_info else ""
@@ -154,7 +154,7 @@ class _LogLines(logging.Handler):
 
 def _log_to(pipe: IpcPipe) -> None:
     handler = _LogLines(pipe)
-    for name in _PACKAGES:
+    for name in PACKAGES:
         logging.getLogger(name).setLevel(logging.DEBUG)
         logging.getLogger(name).addHandler(handler)
 

@@ -48,7 +48,7 @@ def result_left(recording: Recording, request: RunRequest, safe: SafeState, erro
     try:
         result = run_of(recording) or result
         criteria = judge(plan, recording, result.segments)
-    except Exception:  # what became of the bench is to be told all the same
+    except Exception:  # what became of the bench is reported all the same
         logger.exception("the recording cannot be evaluated")
     changes = {
         "plan": plan.name,

@@ -1,4 +1,4 @@
-"""Has a run carried out by a process that holds the hardware, and watches it: docs/decisions/0017.
+"""Has a run executed by a process that holds the hardware, and watches it: docs/decisions/0017.
 
 Nothing here is needed for the bench to be safe: RMCU and dynos switch off by themselves when their host is
 gone. The supervisor says so, looks whether it is so, and keeps what was measured.
@@ -45,7 +45,7 @@ from hil.engine.stop.stopping import held_back
 _HERE_S = 0.1  # how often the other process hears of this one
 #: Outside of the loop: opening compiles on a machine's first run, concluding judges hours of recording.
 _OPENING_S = _CONCLUDING_S = 900.0
-#: For a process that has told its outcome, or lost its command's end of the pipe, to end by itself.
+#: For a process that has reported its outcome, or lost its command's end of the pipe, to end by itself.
 _LEAVING_S = 30.0
 _REAPED_S = 1.0
 _WHERE = "the process that holds the bench"
@@ -54,8 +54,8 @@ _FIX = "cut the drives' power before you approach the bench"
 logger = logging.getLogger(__name__)
 
 
-def carry_out(request: RunRequest, command: Sequence[str], keeps: Sequence[int] = ()) -> RunOutcome:
-    """Carry out a plan: on hardware in a process of its own, else in this one.
+def execute(request: RunRequest, command: Sequence[str], keeps: Sequence[int] = ()) -> RunOutcome:
+    """Execute a plan: on hardware in a process of its own, else in this one.
 
     Args:
         command: starts a process that calls `hold_hardware` with its standard input and output.
@@ -114,7 +114,7 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 
 
 class _Supervisor:
-    """Passes on what is said on both sides, until the run has ended or its process must be given up."""
+    """Passes on what is stated on both sides, until the run has ended or its process must be given up."""
 
     def __init__(self, request: RunRequest, process: subprocess.Popen[bytes], pipe: IpcPipe) -> None:
         self._request, self._process, self._pipe = request, process, pipe
@@ -125,7 +125,7 @@ class _Supervisor:
         self._heard_s = self._stopped_s = time.monotonic()
         self._here_s = -1.0
         self._asked_s: float | None = None
-        self._told_stops = 0
+        self._reported_stops = 0
         self._emergency: EmergencyStopError | None = None
         self._path = request.out / RECORDING
         self._recorded_before = identity_of(self._path)
@@ -164,8 +164,8 @@ class _Supervisor:
             if line.strip().lower() == EMERGENCY:
                 self._emergency = self._emergency or typed_emergency()
             self._pipe.send(Typed(line=line))
-        if stop.times > self._told_stops:
-            self._told_stops = stop.times
+        if stop.times > self._reported_stops:
+            self._reported_stops = stop.times
             self._asked_s = self._asked_s or now_s
             self._pipe.send(StopAsked(times=stop.times))
         if now_s - self._here_s > _HERE_S:
@@ -204,10 +204,10 @@ class _Supervisor:
         return f"hung: it sent nothing for {silent_s:.0f} s" if silent_s > longest_s else ""
 
     def _lost(self, why: str) -> RunOutcome:
-        """What can be said of a run whose process has been given up, or has ended without a word.
+        """What can be stated of a run whose process has been given up, or has ended without a word.
 
         Raises:
-            HilError: it had not begun to record.
+            HilError: it had not started to record.
         """
         if why == "has ended":
             with contextlib.suppress(subprocess.TimeoutExpired):
@@ -215,9 +215,9 @@ class _Supervisor:
             why = _ending(self._process.poll())
         _kill(self._process)
         logger.error("%s %s", _WHERE, why)
-        safe, said = self._safe_state()
+        safe, words = self._safe_state()
         recording = recording_left(self._path, self._recorded_before)
-        error = self._error(why, said or "nothing was commanded", recorded=recording is not None)
+        error = self._error(why, words or "nothing was commanded", recorded=recording is not None)
         stopped = keep_latched(error, self._request.bench, self._request.out, self._request.stops)
         if recording is None:
             raise error
@@ -237,19 +237,19 @@ class _Supervisor:
             return "not_confirmed", f"safe: not confirmed ({'; '.join(complaints)})"
         return "confirmed", "safe: confirmed"
 
-    def _error(self, why: str, said: str, *, recorded: bool) -> HilError:
+    def _error(self, why: str, words: str, *, recorded: bool) -> HilError:
         if self._asked_s is not None and not self._turning and self._concluded is None:
             return InterruptError(f"stopped by the operator, when {_WHERE} {why}")
         out = self._request.out
-        fixes = [_FIX] if "not confirmed" in said else []
+        fixes = [_FIX] if "not confirmed" in words else []
         if recorded:
             fixes.append(f"hil evidence recover {out} recovers the recording of what was measured")
         fix = "; ".join(fixes)
-        what = f"{why}; {said}"
+        what = f"{why}; {words}"
         if self._emergency:
             stop = self._emergency
-            said = f"{stop.what}; {_WHERE} {what}"
-            return EmergencyStopError(said, by=stop.by, origin=stop.origin, way=stop.way, fix=fix)
+            words = f"{stop.what}; {_WHERE} {what}"
+            return EmergencyStopError(words, by=stop.by, origin=stop.origin, way=stop.way, fix=fix)
         return BenchError(what, where=_WHERE, fix=fix)
 
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from drivers import TICK_S, BusLoop, Device, LogWire, Samples, SampleSource, Stream
+from hil.core.can.frames import FrameBlock
 from hil.core.errors import BadInputError, BenchError
-from hil.core.frames import FrameBlock
 from hil.engine.bench.bench import connections_of
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.bus_tally import known_identifiers
@@ -87,7 +87,7 @@ class BenchDecoder:
                     recorder.take(samples)
                 except (
                     BenchError
-                ) as error:  # its clocks have parted: told, the channels are as good as they are
+                ) as error:  # its clocks have parted: reported, the channels are as good as they are
                     self.remarks.append(f"{error.where}: {error.what}")
         return recorder
 
@@ -124,7 +124,7 @@ class _LogClock:
         return self.time_s
 
     def sleep_until(self, time_s: float) -> None:
-        """Nobody waits for what has been."""
+        """No one waits for what has been."""
         self.time_s = max(self.time_s, time_s)
 
 

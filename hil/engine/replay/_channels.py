@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, FrameBlock
 from hil.core.can_logs import CanLog
 from hil.core.errors import BadInputError
-from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.engine.replay._clocks import refuse_overlap, remarks_on_clocks, shifted
 
 _PICK = "select it with --bus BUS=CHANNEL"

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from hil.core.can_logs import CanLog
 from hil.core.errors import BadInputError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 
 _ZONE_STEP_S, _MOST_ZONE_S = 900, 26 * 3600  # zones differ by quarters of an hour, from -12 to +14 hours
 _GAP_S = 60.0

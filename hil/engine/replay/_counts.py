@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.can.dbc_messages import EXTENDED_BIT, keys_of
+from hil.core.can.frames import ERROR_FRAME, FrameBlock
 from hil.core.can_logs import CanLog
-from hil.core.dbc_messages import keys_of
-from hil.core.frames import ERROR_FRAME, FrameBlock
 
 _MOST_NAMED = 8
-_EXTENDED_BIT = 1 << 31
 
 
 @dataclass(frozen=True)
@@ -102,5 +101,5 @@ def counted(
 def _by_identifier(keys: npt.NDArray[np.uint32]) -> Iterable[tuple[str, int]]:
     values, counts = np.unique(keys, return_counts=True)
     for key, count in zip(values.tolist(), counts.tolist(), strict=True):
-        number = key & ~_EXTENDED_BIT
-        yield (f"0x{number:08X}x" if key & _EXTENDED_BIT else f"0x{number:03X}"), count
+        number = key & ~EXTENDED_BIT
+        yield (f"0x{number:08X}x" if key & EXTENDED_BIT else f"0x{number:03X}"), count

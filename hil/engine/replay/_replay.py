@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Any
 
 from hil.core.can_logs import CanLog, Stamps, read_can_log
-from hil.core.clock import utc
 from hil.core.errors import BadInputError
 from hil.core.files import replacing, sha256_of
 from hil.core.recording import AS_NAMED, REPLAY, ColumnMap, Recording, RecordingWriter, read_as_written
 from hil.core.result import RunResult, Segment, verdict_of
-from hil.core.versions import versions
+from hil.core.runtime.clock import utc
+from hil.core.runtime.versions import versions
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.bus_tally import known_identifiers
 from hil.engine.replay._bench import BenchDecoder

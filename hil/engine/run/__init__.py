@@ -1,1 +1,1 @@
-"""A run on an opened bench: pre-flight, arm, carry out, monitor, record, safe state."""
+"""A run on an opened bench: pre-flight, arm, execute, monitor, record, safe state."""

@@ -15,7 +15,7 @@ from hil.engine.run.limits import LimitWatch
 from hil.engine.run.recorder import KEEP_S, Recorder
 from hil.engine.run.zero import ZeroCheck
 
-_LISTEN_S = 0.2
+LISTEN_S = 0.2
 #: How often the loop says to who watches it that it turns, s of the bench's clock.
 TURNED_S = 0.02
 _REPEAT_S = 0.02
@@ -68,7 +68,7 @@ class Arming:
         refuse_others(self.identities)
         self._recorder.begin()
         self._zero.begin()
-        bench.loop.run_for(_LISTEN_S)
+        bench.loop.run_for(LISTEN_S)
         self._zero.before()
         self._refuse_open_interlocks()
         self._watch.refuse_silence(bench.loop.clock.now_s())
@@ -87,7 +87,7 @@ class Arming:
                 raise BenchError(text, where=f"interlock '{reached.name}'", fix=reached.message)
 
     def _refuse_torque(self) -> None:
-        """No drive is enabled before the RMCU has said, in frames that can be believed, that it is off."""
+        """No drive is enabled before the RMCU has reported, in sound frames, that it is off."""
         rmcu = self._bench.rmcu
         if not self._bench.loop.wait_for(rmcu.is_safe, rmcu.safe_within_s):
             why = "; ".join(rmcu.troubles()) or f"state '{rmcu.state}'"
@@ -126,12 +126,12 @@ class Arming:
         bench, tables = self._bench, self._bench.file.device_tables
         clock = bench.loop.clock
         began_s = clock.now_s()
-        bench.loop.run_for(_LISTEN_S / 2)
+        bench.loop.run_for(LISTEN_S / 2)
         found = [identities_of(key, tables[key], device) for key, device in bench.devices_by_key.items()]
         self.identities = tuple(identity for several in found for identity in several)
-        bench.loop.wait_for(lambda: clock.now_s() > began_s + _LISTEN_S - 0.5 * TICK_S, _LISTEN_S)
-        said = {f"{i.device}: {i.name}": i.value for i in self.identities if i.value}
-        self._recorder.writer.describe("identification", said)
+        bench.loop.wait_for(lambda: clock.now_s() > began_s + LISTEN_S - 0.5 * TICK_S, LISTEN_S)
+        identified = {f"{i.device}: {i.name}": i.value for i in self.identities if i.value}
+        self._recorder.writer.describe("identification", identified)
 
     def _event(self, kind: str, text: str) -> None:
         self._recorder.event(self._bench.loop.clock.now_s(), kind, text)

@@ -1,4 +1,4 @@
-"""What stopped a run: kept once, and told in its recording."""
+"""What stopped a run: kept once, and reported in its recording."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from hil.core.result import Hold
 from hil.engine.bench.ranges import Range
 from hil.engine.run.operator import Operator
 
-#: A pause that nobody ends within this time ends the run.
+#: A pause that no one ends within this time ends the run.
 LONGEST_PAUSE_S = 600.0
 #: What holds a run more often than this would hold it for ever.
 MOST_HOLDS = 5
@@ -53,7 +53,7 @@ class Holding:
         self._asked: Counter[str] = Counter()
         self._end: OrderlyEndError | None = None
         self.active = True  # end steps are not held
-        self.said = ""  # why it is being held now
+        self.causes_shown = ""  # why it is being held now
         self.holds: list[Hold] = []
 
     def due(self) -> bool:
@@ -94,7 +94,7 @@ class Holding:
         """Return when the run may go on.
 
         Raises:
-            OrderlyEndError: it is to be ended, or nobody let it go on in time.
+            OrderlyEndError: it is to be ended, or no one let it go on in time.
             InterruptError: the operator ended it.
             EmergencyStopError: somebody asked for it.
         """
@@ -112,7 +112,7 @@ class Holding:
             ended_by = "end of the run"
             raise
         finally:
-            self.said = ""
+            self.causes_shown = ""
             now_s = self._loop.clock.now_s()
             start_s, end_s = self._recording_time(began_s), self._recording_time(now_s)
             if causes:
@@ -126,7 +126,7 @@ class Holding:
             what = f"{asks[0].text}: held, and there is no terminal to resume from"
             raise OrderlyEndError(what, where="hold", fix=_FIX)
         self._operator.take_resume()
-        self.said = causes
+        self.causes_shown = causes
         messages = [cause.message for cause in self._causes.values() if cause.message]
         how = (
             "r and Enter: resume; q and Enter: end the run"

@@ -12,7 +12,7 @@ _FIX = "load the software or calibration that is expected, or correct [{key}.exp
 
 
 def identities_of(key: str, table: DeviceTable, device: object) -> tuple[Identity, ...]:
-    """What a device says, and what was expected of it and not said.
+    """What a device says, and what was expected of it and not answered.
 
     A name such as "software" under `expects` counts for the device and for each of its parts,
     "rear left: software" for that part.
@@ -20,12 +20,12 @@ def identities_of(key: str, table: DeviceTable, device: object) -> tuple[Identit
     Args:
         key: of its table in the bench file.
     """
-    said: Mapping[str, str] = device.identify() if isinstance(device, Identifies) else {}
+    answers: Mapping[str, str] = device.identify() if isinstance(device, Identifies) else {}
     found = [
         Identity(device=key, name=name, value=value, expected=_wanted(table, name))
-        for name, value in said.items()
+        for name, value in answers.items()
     ]
-    names = {part for name in said for part in (name, name.rpartition(": ")[2])}
+    names = {part for name in answers for part in (name, name.rpartition(": ")[2])}
     unsaid = [
         Identity(device=key, name=name, value="", expected=wanted)
         for name, wanted in table.expects.items()

@@ -7,8 +7,8 @@ import contextlib
 import numpy as np
 
 from drivers import TICK_S, FrameSource, NewestFrames, SampleAssembler, Samples, Stream
+from hil.core.can.frames import EXTENDED, FRAME, inserted
 from hil.core.errors import BenchError
-from hil.core.frames import EXTENDED, FRAME, inserted
 from hil.engine.bench.bench import Bench
 from hil.engine.run.limits import LimitWatch
 
@@ -38,7 +38,7 @@ def _warm_up_frames(bench: Bench) -> None:
     """Blocks of one frame are compiled for by themselves: their columns lie without gaps."""
     blocks = [np.zeros(count, FRAME) for count in (1, 2)]
     for block in blocks:
-        block["flags"] = EXTENDED  # nobody listens to those
+        block["flags"] = EXTENDED  # no one listens to those
         NewestFrames({0: ()}).of(block)
         for other in blocks:
             inserted(block, other)

@@ -16,7 +16,7 @@ from hil.engine.bench.range_scan import StreamRanges
 from hil.engine.bench.ranges import Range, ranges_of
 
 _PAUSE_S = 0.03  # wires are looked at every 10 ms
-#: Longer than this nobody watches the bench: RMCU and dynos have long gone to safety by themselves.
+#: Longer than this no one watches the bench: RMCU and dynos have long gone to safety by themselves.
 LONGEST_PAUSE_S = 0.5
 _TEMPERATURES = ("K", "degC", "°C")
 _OF_MOTION = ("N m", "rad/s", "rad", "km/h", "m/s", "m/s²", "1/min", "rpm")
@@ -43,7 +43,7 @@ class OwnPauses:
 class LimitWatch:
     """Trips when a channel stays out of its range for longer than the persistence, or a stream falls silent.
 
-    Ranges with another response than a trip are told to `answer`, with words for what was reached, once each
+    Ranges with another response than a trip go to `answer`, with words for what was reached, once each
     time that they are reached.
 
     The persistence counts in samples of the channel's own stream, at least one: a single odd sample never

@@ -1,4 +1,4 @@
-"""The person at the bench as the loop sees them: told and asked without ever waiting for them."""
+"""The person at the bench as the loop sees them: informed and asked without ever waiting for them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from hil.engine.ipc.ipc import Terminal
 from hil.engine.ipc.ipc_messages import EmergencyAsked
 
 LOOK_S = 0.02  # how often it is looked whether a line was typed
-_VIRTUAL_TICK_S = 0.01  # what passes at once while nobody has to be awaited
+_VIRTUAL_TICK_S = 0.01  # what passes at once while no one has to be awaited
 PAUSE, RESUME, END, EMERGENCY = "p", "r", "q", "e"
 
 
@@ -19,7 +19,7 @@ class Operator:
     """Takes lines from a terminal: p holds the run, r lets it go on, q ends it, e is an emergency stop.
 
     Args:
-        terminal: None: nobody is there.
+        terminal: None: no one is there.
         confirmed_by: who confirmed every prompt beforehand.
         standing: called again and again while virtual time stands still, in which no loop turns.
     """
@@ -80,7 +80,7 @@ class Operator:
         return asked
 
     def take_resume(self) -> bool:
-        """Whether somebody said since the last call that the run may go on."""
+        """Whether somebody released the run since the last call."""
         asked, self._wants_to_go_on = self._wants_to_go_on, False
         return asked
 
@@ -125,7 +125,7 @@ class Operator:
         """Have a prompt confirmed; says by whom or by what.
 
         Raises:
-            InterruptError: the run is to be ended, or nobody answered in time.
+            InterruptError: the run is to be ended, or no one answered in time.
             EmergencyStopError: somebody asked for it.
         """
         if self._confirmed_by:

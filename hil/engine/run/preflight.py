@@ -23,7 +23,7 @@ def preflight(plan: Plan, bench: BenchFile, out: Path, *, somebody_answers: bool
 
     Raises:
         BadInputError: a controller file that cannot be used, a request beyond the
-            bench's limits, a prompt that nobody can answer on hardware, or too little room on the disk.
+            bench's limits, a prompt that no one can answer on hardware, or too little room on the disk.
     """
     rehearsal = rehearsed(plan, bench)
     if rehearsal.prompts and not somebody_answers and bench.simulation is None:
@@ -37,7 +37,7 @@ def preflight(plan: Plan, bench: BenchFile, out: Path, *, somebody_answers: bool
 
 def refuse_unconfirmed(plan: Plan, confirmed_by: str) -> None:
     """Raises:
-    BadInputError: the plan is hazardous, and nobody has taken it upon them.
+    BadInputError: the plan is hazardous, and no one has taken it upon them.
     """
     if plan.hazardous and not confirmed_by.strip():
         why = f": {plan.hazardous}" if isinstance(plan.hazardous, str) else ""
@@ -62,7 +62,7 @@ def rehearsed(plan: Plan, bench: BenchFile) -> Rehearsal:
     """
     rehearsal = Rehearsal(bench)
     for step in (*plan.steps, *plan.finally_):
-        step.carry_out(rehearsal)
+        step.execute(rehearsal)
     return rehearsal
 
 

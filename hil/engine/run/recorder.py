@@ -9,12 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers import SampleAssembler, Samples, Stream
+from hil.core.can.frames import FrameBlock
 from hil.core.channels import TIME
-from hil.core.clock import utc
 from hil.core.errors import BenchError
-from hil.core.frames import FrameBlock
 from hil.core.recording import Event, Recording, RecordingWriter, read_as_written
 from hil.core.result import StreamClock
+from hil.core.runtime.clock import utc
 
 _FLUSH_S = 0.5
 #: How often `keep` is to be called, s: with what it waits for all is on the disk within 0.25 s.
@@ -25,13 +25,13 @@ _LOOK_S = 2.0  # what clocks do shows in seconds
 
 
 class Recorder:
-    """Writes raw frames as they come and rows of samples every half second, or as often as it is told to.
+    """Writes raw frames as they come and rows of samples every half second, or as often as is asked.
 
     The first stream is the time base. `start_s` is the bench time at which its first sample came; recording
     times count samples from there, at the pace of the time base's own clock.
 
     Args:
-        promptly: the recording is of a bench that nobody can repeat: `keep` will be called every `KEEP_S`,
+        promptly: the recording is of a bench that no one can repeat: `keep` will be called every `KEEP_S`,
             and what it has written survives a power cut a quarter of a second later.
         clock_0_ns: wall-clock time at the zero of the bench clock, ns since 1970.
         between: called between parts of long work.
@@ -77,7 +77,7 @@ class Recorder:
         """Record samples of any source; those before `begin` only tell how the devices' clocks go.
 
         Raises:
-            BenchError: a device's count of samples and their arrival have parted; told once.
+            BenchError: a device's count of samples and their arrival have parted; raised once.
         """
         if not self._begun:
             self._assembler.learn(samples)

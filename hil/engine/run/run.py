@@ -8,7 +8,6 @@ import time
 from functools import partial
 
 from drivers import TICK_S, SaysDamage
-from hil.core.clock import utc
 from hil.core.errors import (
     BadInputError,
     BenchError,
@@ -17,8 +16,8 @@ from hil.core.errors import (
     LimitTripError,
     OrderlyEndError,
 )
+from hil.core.errors.wording import LONGEST_REASON, refuse_long
 from hil.core.files import make_directory
-from hil.core.printable import LONGEST_REASON, refuse_long
 from hil.core.recording import Recording
 from hil.core.result import (
     AcceptedExpiry,
@@ -28,13 +27,13 @@ from hil.core.result import (
     Timing,
     verdict_of,
 )
+from hil.core.runtime.clock import utc
 from hil.engine.bench.bench import Bench, open_bench, refuse_needs
 from hil.engine.bench.bus_loads import BusLoads
 from hil.engine.bench.calibration_dates import accepted_expiry
 from hil.engine.bench.request_timing import COLLECT_S, RequestTiming
 from hil.engine.ipc.ipc import RECORDING, RunOutcome, RunRequest, analysed_apart, analysed_here
 from hil.engine.run.arming import Arming
-from hil.engine.run.conductor import BenchConductor
 from hil.engine.run.failures import Failures
 from hil.engine.run.operator import Operator
 from hil.engine.run.preflight import channels_of, preflight, refuse_unconfirmed
@@ -42,6 +41,7 @@ from hil.engine.run.recorder import Recorder
 from hil.engine.run.run_files import store_expiry, store_inputs, store_result
 from hil.engine.run.run_monitoring import RunMonitoring
 from hil.engine.run.safety import reach_safe_state
+from hil.engine.run.step_execution import BenchConductor
 from hil.engine.stop.emergency_stop import keep_latched, refuse_latched
 from test_plans import estimate_duration_s, judge, not_checked
 
@@ -49,7 +49,7 @@ _PROGRESS_S = 0.5
 
 
 def run_plan(request: RunRequest) -> RunOutcome:
-    """Carry out a plan on a bench and write its recording.
+    """Execute a plan on a bench and write its recording.
 
     The order of events is described in docs/reference/order-of-events.md.
 
@@ -77,7 +77,7 @@ def run_plan(request: RunRequest) -> RunOutcome:
             for path in request.replaces:
                 path.unlink(missing_ok=True)
             with request.stop.telling(partial(setattr, bench.loop, "stop_requested", True)):
-                return _Run(request, bench, expired).carry_out()
+                return _Run(request, bench, expired).execute()
 
 
 class _Run:
@@ -87,7 +87,7 @@ class _Run:
         self._unwatched = False
         self._end_steps = ""
 
-    def carry_out(self) -> RunOutcome:
+    def execute(self) -> RunOutcome:
         self._prepare()
         bench = self._bench
         started = time.perf_counter()
@@ -101,7 +101,7 @@ class _Run:
         except Exception as error:  # also a fault of ours must leave a safe bench and say what it was
             self._failures.take(error)
         finally:
-            # Also when the interpreter itself is going down: nobody may be left with torque on.
+            # Also when the interpreter itself is going down: no one may be left with torque on.
             bench.loop.shielded = True
             self._watch.end()
             self._unsafe = reach_safe_state(bench, self._failures.note) if self._arming.armed else []
@@ -164,7 +164,7 @@ class _Run:
         self._expected_s = estimate_duration_s(self._request.plan)
 
     def _turned(self) -> None:
-        """Tell who watches this process that the loop turns; nobody may drive a bench unwatched."""
+        """Tell who watches this process that the loop turns; no one may drive a bench unwatched."""
         gone = self._request.watched.turned() if self._request.watched is not None else ""
         if not gone:
             return
@@ -190,19 +190,19 @@ class _Run:
         plan, conductor = self._request.plan, self._conductor
         try:
             for step in plan.steps:
-                step.carry_out(conductor)
+                step.execute(conductor)
             self._watch.hold.refuse_end()
         except (InterruptError, BadInputError, OrderlyEndError) as error:
             self._end_early(error)
         except HilError:
-            self._end_steps = "not carried out: nothing may move on a bench that has failed"
+            self._end_steps = "not executed: nothing may move on a bench that has failed"
             raise
         except Exception as error:  # a mistake in a step's code: the bench is well
             self._end_early(error)
         self._watch.hold.active = False
         self._end_steps = "started, but not completed"
         for step in plan.finally_:
-            step.carry_out(conductor)
+            step.execute(conductor)
         self._end_steps = self._read_back()
         self._event("end_steps", self._end_steps)
         self._watch.hold.refuse_end()
@@ -217,13 +217,13 @@ class _Run:
         """What the end steps have left, as the devices say."""
         names = ", ".join(step.kind for step in self._request.plan.finally_) or "none"
         speed, state = self._bench.dyno.wheel_speed_rad_s, self._bench.rmcu.state
-        return f"carried out: {names}; the wheels turn at {abs(speed):.2f} rad/s, the RMCU is in '{state}'"
+        return f"executed: {names}; the wheels turn at {abs(speed):.2f} rad/s, the RMCU is in '{state}'"
 
     def _show_progress(self) -> None:
         passed_s = self._bench.loop.clock.now_s() - self._begin_s
         segments = self._conductor.segments
         text = segments[-1].id if segments else "coming up"
-        text = f"held: {self._watch.hold.said}" if self._watch.hold.said else text
+        text = f"held: {self._watch.hold.causes_shown}" if self._watch.hold.causes_shown else text
         self._request.progress(min(1.0, passed_s / max(self._expected_s, 1e-9)), text)
 
     def _blame(self) -> str:
@@ -293,7 +293,7 @@ class _Run:
         )
         try:
             store_result(self._recorder, self._inputs, self._conductor, result)
-        except Exception as error:  # the result is to be told all the same
+        except Exception as error:  # the result is reported all the same
             failures.take(error)
         largest = dict(self._watch.limits.largest)
         at_fault = (

@@ -5,17 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 
 from hil.core.channels import CHANNELS
-from hil.core.file_format import FORMAT
+from hil.core.files.kinds import FORMAT
 from hil.core.model import model_to_toml
 from hil.core.recording import ACCEPTED_EXPIRY
 from hil.core.result import AcceptedExpiry, RunResult
-from hil.core.versions import versions
+from hil.core.runtime.versions import versions
 from hil.engine.bench.bench import Bench
 from hil.engine.bench.device_kinds import descriptions_of
 from hil.engine.ipc.ipc import RunRequest
-from hil.engine.run.conductor import BenchConductor
 from hil.engine.run.provenance import hashes
 from hil.engine.run.recorder import Recorder
+from hil.engine.run.step_execution import BenchConductor
 
 
 def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench, started_at: str) -> dict[str, bytes]:

@@ -15,7 +15,7 @@ Fault = Callable[[Exception], None]
 
 
 class _Descent:
-    """A device on its way to safety: told again and again until it is there or its deadline has passed."""
+    """A device on its way to safety: asked again and again until it is there or its deadline has passed."""
 
     def __init__(self, device: Device, fault: Fault) -> None:
         self._device, self._fault = device, fault
@@ -53,14 +53,14 @@ class _Descent:
 def reach_safe_state(bench: Bench, fault: Fault = lambda error: None) -> list[str]:
     """Bring all devices to their safe state; the complaints of those that did not confirm it in time.
 
-    Never raises for a device or a bus that fails: it goes on with the others. `fault` is told what is a
+    Never raises for a device or a bus that fails: it goes on with the others. `fault` gets what is a
     mistake in a device's code.
     """
     bench.loop.shielded = True
     descents = [_Descent(device, fault) for device in bench.devices]
     start_s = bench.loop.clock.now_s()
     waiting = list(descents)
-    tick, told = 0, False
+    tick, reported = 0, False
     while waiting:
         if tick % round(_REPEAT_S / TICK_S) == 0:
             for descent in waiting:
@@ -68,8 +68,8 @@ def reach_safe_state(bench: Bench, fault: Fault = lambda error: None) -> list[st
         try:
             bench.loop.wait_for(lambda: False, TICK_S)
         except Exception as error:
-            if not isinstance(error, HilError) and not told:
-                told = True
+            if not isinstance(error, HilError) and not reported:
+                reported = True
                 fault(error)
             # Neither a dead bus nor a faulty device may keep the others from being served.
             bench.loop.clock.sleep_until(bench.loop.clock.now_s() + TICK_S)

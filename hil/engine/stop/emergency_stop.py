@@ -122,7 +122,7 @@ def keep_latched(
     """Latch the bench if an emergency stop ended the run; `error.fix` says then what a person has to do."""
     if not isinstance(error, EmergencyStopError):
         return None
-    error.fix = f"make sure that nobody is in danger; then: {_how_to_reset(file, owner)}"
+    error.fix = f"make sure that no one is in danger; then: {_how_to_reset(file, owner)}"
     latched = True
     try:
         place = latch(
@@ -152,7 +152,7 @@ def refuse_latched(file: BenchFile, owner: Path | None = None) -> None:
         raise BenchError(
             f"emergency stop since {stop.at}, by {stop.by}: {stop.why}",
             where=f"bench '{file.name}'",
-            fix=f"make sure that nobody is in danger, remove the cause; then: {_how_to_reset(file, owner)}",
+            fix=f"make sure that no one is in danger, remove the cause; then: {_how_to_reset(file, owner)}",
         )
 
 

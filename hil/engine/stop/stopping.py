@@ -28,27 +28,27 @@ def hear_signals() -> None:
 
 
 class StopRequest:
-    """How often somebody asked to stop; whoever works is told at once and decides when it can."""
+    """How often somebody asked to stop; whoever works is reported at once and decides when it can."""
 
     def __init__(self) -> None:
         self.times = 0
-        self._told: Callable[[], None] = lambda: None
+        self._callback: Callable[[], None] = lambda: None
 
     def ask(self) -> None:
         """Ask to stop; safe to call from a signal handler and again."""
         self.times += 1
-        self._told()
+        self._callback()
 
     @contextlib.contextmanager
-    def telling(self, told: Callable[[], None]) -> Iterator[None]:
-        """Call `told` whenever somebody asks, and now if somebody already has."""
-        before, self._told = self._told, told
+    def telling(self, callback: Callable[[], None]) -> Iterator[None]:
+        """Call `callback` whenever somebody asks, and now if somebody already has."""
+        before, self._callback = self._callback, callback
         if self.times:
-            told()
+            callback()
         try:
             yield
         finally:
-            self._told = before
+            self._callback = before
 
     @contextlib.contextmanager
     def by_signals(self) -> Iterator[None]:

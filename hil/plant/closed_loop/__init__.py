@@ -1,6 +1,6 @@
 """Plant, sensors, drives and the RMCU's control as one compiled loop, sample by sample.
 
-`tick` is one millisecond, on the wire and in predictions; `ClosedLoop` carries out many at once.
+`tick` is one millisecond, on the wire and in predictions; `ClosedLoop` executes many at once.
 """
 
 from hil.core.conventions import TICK_S

@@ -12,6 +12,7 @@ from hil.plant import LONGEST_STEP_S, bench_sensor, refuse_diverged_state, refus
 from hil.plant import _kernel as K
 from hil.plant import _slots as P
 from hil.plant import _states as X
+from hil.plant import sides as S
 from hil.plant.closed_loop import drive as D
 from hil.plant.closed_loop import tick as T
 
@@ -34,6 +35,7 @@ class State:
     """Everything of a bench that a tick reads or moves, but for the RMCU's memory."""
 
     x: Array
+    form: tuple[float, ...]
     vector: Array
     scalars: Array
     torques: Array
@@ -72,7 +74,7 @@ class State:
         wheel_radius_m: float | None = None,
         initial_speed_m_s: float | None = None,
     ) -> None:
-        """Change what the drives' vehicle model is told; None leaves a value as it is."""
+        """Change what the drives' vehicle model is set to; None leaves a value as it is."""
         for array, index, value in (
             (self.vector, P.VEHICLE_INERTIA, inertia_kg_m2),
             (self.vector, _ROLLING, rolling_nm),
@@ -94,13 +96,15 @@ def state_at_rest(model: Model, wheel_radius_m: float, longest_step_s: float = L
     """
     refuse_too_stiff(model, longest_step_s)
     vector = P.pack(model)
+    form = S.form_of(model)
     scalars = np.zeros(T.SCALARS)
     scalars[T.RADIUS] = wheel_radius_m
     scalars[T.LONGEST_STEP] = longest_step_s
     three = vector[P.KIND] == P.THREE_INERTIA
     scalars[T.DRIVE_INERTIA] = vector[P.WHEEL_INERTIA if three else P.VEHICLE_INERTIA]
     return State(
-        x=np.zeros(X.ALL_STATES),
+        x=np.zeros(X.ALL_STATES - X.MOVING + len(form)),
+        form=form,
         vector=vector,
         scalars=scalars,
         torques=np.zeros(T.HISTORY),

@@ -2,19 +2,35 @@
 
 from __future__ import annotations
 
-from hil.core.compiled import compiled, uncounted
+from hil.core.runtime.compiled import compiled, uncounted
 from hil.plant import _kernel as K
 from hil.plant.closed_loop.tick import tick
 
 
 @compiled
 def advance(  # type: ignore[no-untyped-def]
-    first, x, vector, w, torques, fir, drives, sensors, past, noise, modes, requests, codes, status, rows
+    first,
+    x,
+    form,
+    vector,
+    w,
+    torques,
+    fir,
+    drives,
+    sensors,
+    past,
+    noise,
+    modes,
+    requests,
+    codes,
+    status,
+    rows,
 ):
-    """Carry out `tick` for sample `first` and those that follow it, one for each of `modes`.
+    """Execute `tick` for sample `first` and those that follow it, one for each of `modes`.
 
-    `rows` has a row, `requests` and `codes` have an entry for each sample; `noise` has a row for each, or one
-    for all. Drives keep what they were told.
+    `form` is a state at rest, whose length says how many numbers of `x` move. `rows` has a row, `requests`
+    and `codes` have an entry for each sample; `noise` has a row for each, or one for all. Drives keep their
+    last request.
     """
     # what is cut out of an array in each tick is not counted: that took half of a tick's time
     x, w, torques, status = uncounted(x), uncounted(w), uncounted(torques), uncounted(status)
@@ -28,6 +44,7 @@ def advance(  # type: ignore[no-untyped-def]
         tick(
             first + i,
             x,
+            form,
             p,
             w,
             torques,

@@ -31,7 +31,7 @@ _REASONS = {OUT_OF_RANGE: "out_of_range", INCOMPLETE: "incomplete"}
 class ClosedLoop:
     """The simulated bench without its wire: the same compiled tick, and numbers rounded as frames round.
 
-    Time passes in `run` only; what is told to drives and RMCU counts from the next sample on. Sensors have
+    Time passes in `run` only; what drives and RMCU are asked for counts from the next sample on. Sensors have
     no noise but what is given. Parameters in `held` are what the RMCU uses in place of those that it is
     given. `longest_step_s` is the integrator's.
 
@@ -56,7 +56,7 @@ class ClosedLoop:
             )
         self.wire = wire
         self._held = dict(held or {})
-        #: What the drives' vehicle model is told stands here too.
+        #: What the drives' vehicle model is reported stands here too.
         self.plant = state_at_rest(model, wheel_radius_m, longest_step_s)
         self._noise = noise
         self._memory = m = M.Memory()
@@ -146,6 +146,7 @@ class ClosedLoop:
         advance(
             self.samples,
             s.x.copy(),
+            s.form,
             s.vector,
             s.scalars.copy(),
             s.torques.copy(),
@@ -183,6 +184,7 @@ class ClosedLoop:
         advance(
             self.samples,
             s.x,
+            s.form,
             s.vector,
             s.scalars,
             s.torques,

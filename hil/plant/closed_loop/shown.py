@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.can.signals import Signal
 from hil.core.channels import TIME
-from hil.core.signals import Signal
 from hil.plant.closed_loop import tick as T
 
 Array = npt.NDArray[np.float64]
@@ -44,7 +44,7 @@ class Wire:
     Args:
         channels: the signal that shows each measured channel.
         request: torque requests (N m); parameter: values of the RMCU's parameters;
-            target_speed: speeds that the drives are told (rad/s).
+            target_speed: speeds that the drives are reported (rad/s).
         late: samples by which the frame that a recording takes for a channel is not of the sample itself
             (-1: of the one before); channels that are left out are of the sample.
     """

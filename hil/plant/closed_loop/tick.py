@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 
-from hil.core.compiled import compiled
+from hil.core.runtime.compiled import compiled
 from hil.plant import _kernel as K
 from hil.plant import _slots as P
 from hil.plant import _states as X
+from hil.plant import sides as S
 from hil.plant._sensors import DELAY, GAIN, LAG, OFFSET, STEP, between, lagged, reading, samples_late
 from hil.plant.closed_loop import drive as D
 from hil.plant.controller import memory as M
@@ -45,6 +46,7 @@ from hil.plant.controller.control import control
     OBSERVER_SPEED,
 ) = range(28)
 COLUMNS = 28
+SIGNS = (1.0, -1.0)  # left, right
 SENSORS = 5  # motor speed, wheel left, wheel right, shaft left, shaft right
 SENSOR_GAIN, SENSOR_OFFSET, SENSOR_STEP, SENSOR_DELAY = GAIN, OFFSET, STEP, DELAY
 
@@ -89,33 +91,47 @@ def _couple(x, drives, w):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def tick(k, x, p, w, torques, fir, drives, sensors, past, noise, mode, request, code, status, row):  # type: ignore[no-untyped-def]
+def tick(  # type: ignore[no-untyped-def]
+    k, x, form, p, w, torques, fir, drives, sensors, past, noise, mode, request, code, status, row
+):
     """Sample k: fill `row` with what is measured and commanded at t_k, then move to t_k+1.
 
-    `p` is the packed model by value. `fir` holds the RMCU's arrays (numerators, denominators, filter states,
-    gains, states).
+    `x` is the state; as many of its numbers move as `form` is long. `p` is the packed model by value. `fir`
+    holds the RMCU's arrays (numerators, denominators, filter states, gains, states).
     """
     b, a, z, gains, states = fir
     dt = gains[M.SAMPLE_TIME]
     coupled = _couple(x, drives, w)
-    state, memories = K.as_state(x)
-    loads = 0.0
+    state, memories = K.as_state(x, form)
+    apart, twisted, taken, more = S.differences(state, memories, p, coupled)
     for side in range(2):
-        drive_load = D.load(drives[side], x[X.WHEEL_SPEED], 0.5 * w[DRIVE_INERTIA], dt)
-        row[LOAD_LEFT + side] = drive_load
-        loads += drive_load
+        speed = x[X.WHEEL_SPEED] + SIGNS[side] * apart
+        row[LOAD_LEFT + side] = D.load(drives[side], speed, 0.5 * w[DRIVE_INERTIA], dt)
+    loads = S.loads(state, row[LOAD_LEFT], row[LOAD_RIGHT])
     truth = noise[SENSORS:]  # scratch room behind the noise
-    K.outputs(state, memories, p, w[SLEWED], coupled, 0.0 if coupled else loads, truth)
+    outside = 0.0 if coupled else row[LOAD_LEFT] + row[LOAD_RIGHT]
+    K.outputs(state, memories, p, w[SLEWED], coupled, outside, truth)
     if coupled:  # the drives play the vehicle: nothing else is at the wheels
-        loads = 0.0
-        row[LOAD_LEFT] = row[LOAD_RIGHT] = 0.5 * truth[K.OUT_LOAD]
+        loads = S.loads(state, 0.0, 0.0)
+        for side in range(2):
+            row[LOAD_LEFT + side] = 0.5 * (truth[K.OUT_LOAD] + more) + SIGNS[side] * taken
     row[MOTOR_SPEED] = _sense(truth[K.OUT_MOTOR_SPEED], noise[0], sensors[0], past[0], k, dt)
     for side in range(2):
         row[WHEEL_LEFT + side] = _sense(
-            truth[K.OUT_WHEEL_SPEED], noise[1 + side], sensors[1 + side], past[1 + side], k, dt
+            truth[K.OUT_WHEEL_SPEED] + SIGNS[side] * apart,
+            noise[1 + side],
+            sensors[1 + side],
+            past[1 + side],
+            k,
+            dt,
         )
         row[SHAFT_LEFT + side] = _sense(
-            0.5 * truth[K.OUT_SHAFT_TORQUE], noise[3 + side], sensors[3 + side], past[3 + side], k, dt
+            0.5 * truth[K.OUT_SHAFT_TORQUE] + SIGNS[side] * twisted,
+            noise[3 + side],
+            sensors[3 + side],
+            past[3 + side],
+            k,
+            dt,
         )
     # V̂ reaches the RMCU in the dyno controller's frame, one sample late and with that frame's resolution.
     v_hat = w[V_HAT]
@@ -153,7 +169,7 @@ def tick(k, x, p, w, torques, fir, drives, sensors, past, noise, mode, request, 
     state, memories, w[SLEWED] = K.sample(
         state, memories, p, w[SLEWED], old, new, late, dt, coupled, loads, w[LONGEST_STEP]
     )
-    for i in range(X.MOVING):
+    for i in range(len(state)):
         x[i] = state[i]
-    for i in range(X.MOVING, X.ALL_STATES):
-        x[i] = memories[i - X.MOVING]
+    for i in range(X.ALL_STATES - X.MOVING):
+        x[len(state) + i] = memories[i]

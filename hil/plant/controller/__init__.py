@@ -3,7 +3,7 @@
 One place for the emulated RMCU on the wire, for predictions and for tuning.
 """
 
-from hil.core.controller_bounds import LARGEST_TORQUE_NM
+from hil.core.controller.bounds import LARGEST_TORQUE_NM
 from hil.plant.controller.control import control
 from hil.plant.controller.memory import Memory
 from hil.plant.controller.parameters import build, in_range

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hil.core.compiled import compiled
+from hil.core.runtime.compiled import compiled
 from hil.plant.controller import memory as M
 from hil.plant.controller.driving_force_control import feedforward, wheel_speed_reference
 from hil.plant.controller.driving_force_observer import estimate

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.compiled import compiled
+from hil.core.runtime.compiled import compiled
 
 Array = npt.NDArray[np.float64]
 LARGEST_ORDER = 8

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from hil.core.controller_bounds import LARGEST_TORQUE_NM, SAMPLE_TIMES_S
+from hil.core.controller.bounds import LARGEST_TORQUE_NM, SAMPLE_TIMES_S
 from hil.plant.controller.driving_force_control import DrivingForceControl
 from hil.plant.controller.driving_force_observer import DrivingForceObserver
 from hil.plant.controller.memory import SAMPLE_TIME, TORQUE_LIMIT, Memory

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.compiled import compiled
+from hil.core.runtime.compiled import compiled
 from hil.plant.controller import memory as M
 from hil.plant.controller.filters import Filter, step, tustin
 

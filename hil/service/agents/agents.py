@@ -1,7 +1,7 @@
 """Benches of agents on other machines, as the service knows them (docs/decisions/0024).
 
 An agent asks, the service answers: it tells what its benches do twice a second and hears what to do. What is
-known here of a run under way is what its agent told last; a run stays its agent's however long that is away.
+known here of a run is what its agent reported last; a run stays its agent's, however long it is away.
 """
 
 from __future__ import annotations
@@ -16,13 +16,12 @@ from pathlib import Path
 
 from sqlalchemy import Engine
 
+from hil.api_schemas.agent import AgentBench, AgentData, AgentOrders, AgentReport, PlanSent, TakenRun
 from hil.core.errors import HilError
 from hil.core.files import make_directory, read_text, write_atomically
 from hil.engine.ipc.ipc_messages import EmergencyAsked
-from hil.execution.plan_files import files_of
+from hil.execution.files import files_of, folder_of
 from hil.execution.run_execution import PLAN, RunningRun
-from hil.execution.run_files import folder_of
-from hil.messages.agent import AgentBench, AgentData, AgentOrders, AgentReport, PlanSent, TakenRun
 from hil.service.agents.remote_bench import Agent, AgentsRun, RemoteBench
 from hil.service.store import AgentStore, BenchStore, DatabaseAwayError, LeaseStore, RunStore
 from test_plans import Plan, plan_from_text
@@ -112,7 +111,7 @@ class Agents:
             its benches that were registered just now, and those that are not its own, with the reason.
 
         Raises:
-            DatabaseAwayError: nobody can tell whose the benches are.
+            DatabaseAwayError: no one can tell whose the benches are.
         """
         agent = self._agent(agent_id, report.name, report.machine, report.version)
         agent.name, agent.machine, agent.version = report.name, report.machine, report.version
@@ -143,7 +142,7 @@ class Agents:
         agent = self._agents[agent_id]
         mine = [one for one in self.benches.values() if one.agent is agent]
         waiting: list[str] = []
-        with contextlib.suppress(DatabaseAwayError):  # nothing is begun until it answers
+        with contextlib.suppress(DatabaseAwayError):  # nothing is started until it answers
             waiting = [one.name for one in mine if self._may_take(one) and self._next(one) is not None]
         return AgentOrders(orders=list(agent.orders.values()), waiting=waiting, refused=refused)
 
@@ -155,7 +154,7 @@ class Agents:
             await asyncio.wait_for(agent.news.wait(), within_s)
 
     def wake(self, bench: str) -> None:
-        """Have a bench's agent told what waits for it."""
+        """Notify a bench's agent of what waits for it."""
         if bench in self.benches:
             self.benches[bench].agent.news.set()
 
@@ -164,7 +163,7 @@ class Agents:
 
         Raises:
             HilError: what the run needs cannot be read; it has ended by that.
-            DatabaseAwayError: nothing is begun now.
+            DatabaseAwayError: nothing is started now.
         """
         bench = self.benches[name]
         given = [one.id for one in self._runs.running(agent_id) if one.bench == name]
@@ -205,7 +204,7 @@ class Agents:
         self._changed(bench)
 
     def remember_stop(self, bench: str, asked: EmergencyAsked) -> None:
-        """Have the agent told also by the next service.
+        """Have the next service notify the agent, too.
 
         Raises:
             DatabaseAwayError: only as long as this service lives.
@@ -221,12 +220,12 @@ class Agents:
         until_s = time.monotonic() + _SETTLED_S
         while order.id in place.agent.orders and time.monotonic() < until_s:
             await asyncio.sleep(0.05)
-        return place.agent.orders.pop(order.id, None) is None  # nobody expects it any more, later
+        return place.agent.orders.pop(order.id, None) is None  # no one expects it any more, later
 
     def let_go(self, bench: str, by: str) -> None:
         """Let another agent have the bench of one that is away; a run that it has is interrupted.
 
-        An emergency stop that nobody has confirmed is told whoever has the bench next.
+        An emergency stop that no one has confirmed is shown to whoever has the bench next.
         """
         place = self.benches[bench]
         why = f"{by} has let the bench of an agent go that was away; what it has comes when it is back"
@@ -260,7 +259,7 @@ class Agents:
         return ""
 
     def _restore(self, bench: RemoteBench) -> None:
-        """A run that the agent has begun, as is written."""
+        """A run that the agent has started, as is written."""
         for run in self._runs.running(bench.agent.id):
             if run.bench == bench.name:
                 folder = folder_of(self._folder, run.id)
@@ -278,7 +277,7 @@ class Agents:
                 self._restore(bench)
         if bench.running is not None and bench.running.data.id == report.running:
             bench.running.share, bench.running.doing = report.share, report.doing
-            bench.running.told = report.told
+            bench.running.message = report.message
         if bench.stop_by and bench.stops() <= set(obeyed):
             bench.stop_by = ""
             with contextlib.suppress(DatabaseAwayError):
@@ -298,7 +297,7 @@ class Agents:
         return there
 
     def _stop(self, bench: RemoteBench, asked: EmergencyAsked) -> None:
-        """One order that nobody has obeyed yet says it: who asks again adds none."""
+        """One order that no one has obeyed yet says it: who asks again adds none."""
         if bench.stop_by and bench.stops():
             bench.agent.news.set()
             return

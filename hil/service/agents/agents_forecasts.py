@@ -1,12 +1,12 @@
-"""What agents predict of plans on their benches: `hil check`, carried out where the bench is."""
+"""What agents predict of plans on their benches: `hil check`, executed where the bench is."""
 
 from __future__ import annotations
 
 import asyncio
 
+from hil.api_schemas.agent import AgentsForecast
+from hil.api_schemas.api import ForecastData, Problem
 from hil.core.errors import BadInputError, BenchError
-from hil.messages.agent import AgentsForecast
-from hil.messages.api import ForecastData, Problem
 from hil.service.agents.agents import sent
 from hil.service.agents.remote_bench import RemoteBench
 from test_plans import Plan
@@ -47,7 +47,7 @@ class AgentsForecasts:
         raise kind(problem.what, where=problem.where, fix=problem.fix)
 
     def answer(self, order: str, answer: AgentsForecast) -> bool:
-        """Take an agent's answer; false if nobody waits for it."""
+        """Take an agent's answer; false if no one waits for it."""
         asked = self._asked.get(order)
         if asked is None or asked.done():
             return False

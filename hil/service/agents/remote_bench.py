@@ -1,4 +1,4 @@
-"""A bench of an agent on another machine: what it is, what its agent told last, what that has to do."""
+"""A bench of an agent on another machine: what it is, what its agent reported last, what that has to do."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import secrets
 import time
 from dataclasses import dataclass, field
 
+from hil.api_schemas.agent import AgentBench, Order, OrderKind, PlanSent
+from hil.api_schemas.api import BenchState
 from hil.core.errors import StopWay
 from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.execution.run_execution import RunningRun
-from hil.messages.agent import AgentBench, Order, OrderKind, PlanSent
-from hil.messages.api import BenchState
 from hil.service.store import BenchStore
 
 AWAY_S = 10.0
@@ -46,7 +46,7 @@ class Agent:
 
 
 class RemoteBench:
-    """A bench of an agent: what it is, and what its agent told last."""
+    """A bench of an agent: what it is, and what its agent reported last."""
 
     def __init__(self, agent: Agent, report: AgentBench) -> None:
         self.agent, self.report = agent, report
@@ -90,7 +90,7 @@ class RemoteBench:
         origin: str = "",
         way: StopWay = "",
     ) -> Order:
-        """Have the agent told."""
+        """Notify the agent."""
         of_run = kind not in ("reset", "forecast")
         order = Order(
             id=secrets.token_hex(8),

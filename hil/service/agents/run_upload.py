@@ -10,19 +10,19 @@ import os
 from functools import partial
 from pathlib import Path
 
+from hil.api_schemas.agent import MOST_FILE_BYTES, MOST_FILES, FileMade, RunEnding
+from hil.api_schemas.api import RunData
 from hil.core.errors import BenchError
 from hil.core.files import make_directory, sha256_of
 from hil.engine import RECORDING
 from hil.execution.daemon_thread import apart
-from hil.execution.run_files import folder_of
+from hil.execution.files import folder_of
 from hil.execution.run_process import result_in
-from hil.messages.agent import MOST_FILE_BYTES, MOST_FILES, FileMade, RunEnding
-from hil.messages.api import RunData
 from hil.service.store import RunStore
 
 
 class RunUploads:
-    """Takes files of runs that agents carry out.
+    """Takes files of runs that agents execute.
 
     Args:
         service: whose the files are from then on, by its name in the database.

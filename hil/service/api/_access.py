@@ -8,7 +8,7 @@ from typing import Annotated
 from fastapi import Depends, Request
 from fastapi.security import APIKeyCookie, HTTPAuthorizationCredentials, HTTPBearer
 
-from hil.messages.api import LADDER, Me, Role
+from hil.api_schemas.api import LADDER, Me, Role
 from hil.service.api._problems import RefusedError
 from hil.service.service import Service
 from hil.service.stop_post import COOKIE
@@ -34,7 +34,7 @@ def who(
     header: Annotated[HTTPAuthorizationCredentials | None, Depends(_bearer)],
     cookie: Annotated[str | None, Depends(_cookie)],
 ) -> Me:
-    """Who asks. A service without tokens is reached from its own machine only, and asks nobody.
+    """Who asks. A service without tokens is reached from its own machine only, and asks no one.
 
     Raises:
         RefusedError: no token, or none that is valid.

@@ -6,9 +6,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Path, Query, Request
 
-from hil.core.errors import HilError
-from hil.execution.run_files import LOCK
-from hil.messages.agent import (
+from hil.api_schemas.agent import (
     MOST_FILE_BYTES,
     AgentData,
     AgentId,
@@ -21,7 +19,9 @@ from hil.messages.agent import (
     RunFileName,
     Taken,
 )
-from hil.messages.api import BenchName, RunData, RunId
+from hil.api_schemas.api import BenchName, RunData, RunId
+from hil.core.errors import HilError
+from hil.execution.files import LOCK
 from hil.service.agents.remote_bench import RemoteBench
 from hil.service.api._access import AgentItself, Engineer, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request
 
+from hil.api_schemas.api import BenchData, BenchName, LeaseData, LeaseWanted
 from hil.core.errors import StopWay
 from hil.engine.ipc.ipc_messages import EmergencyAsked
-from hil.messages.api import BenchData, BenchName, LeaseData, LeaseWanted
 from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
 from hil.service.service import Service
@@ -60,7 +60,7 @@ async def stop_all_in_emergency(service: TheService, request: Request) -> list[B
 
 
 def _asked(service: Service, request: Request) -> tuple[EmergencyAsked, str]:
-    """Who asks, if they say so and are known, with their role: nobody is refused here, no database asked."""
+    """Who asks, if they say so and are known, with their role: no one is refused here, no database asked."""
     header = request.headers.get("authorization", "")
     secret = header[7:] if header.lower().startswith("bearer ") else request.cookies.get(COOKIE, "")
     address = request.client.host if request.client else "unknown"

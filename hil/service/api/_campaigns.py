@@ -8,8 +8,8 @@ from fastapi import APIRouter, Body
 from fastapi.responses import FileResponse
 from starlette.responses import Response
 
-from hil.messages.api import RunId
-from hil.messages.campaign import CampaignData, CampaignExample, CampaignWanted
+from hil.api_schemas.api import RunId
+from hil.api_schemas.campaign import CampaignData, CampaignExample, CampaignWanted
 from hil.service.api._access import Engineer, TheService, Viewer
 from hil.service.api._left_files import left_file
 from hil.service.api._problems import RefusedError, missing, refuse_elsewhere

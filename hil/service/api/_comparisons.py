@@ -6,9 +6,9 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
 
+from hil.api_schemas.api import OVER, RunData, RunId
+from hil.api_schemas.comparison import ChannelName, ComparisonData, SegmentName, TracesData
 from hil.engine import RECORDING
-from hil.messages.api import OVER, RunData, RunId
-from hil.messages.comparison import ChannelName, ComparisonData, SegmentName, TracesData
 from hil.service.api._access import TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
 from hil.service.service import Service

@@ -9,10 +9,8 @@ from typing import Annotated, Any, TypeVar
 
 from fastapi import APIRouter, Body, Request, Response
 
-from hil.core.errors import BadInputError
-from hil.core.files import read_text
-from hil.messages.api import PlanData, PlanName
-from hil.messages.design import (
+from hil.api_schemas.api import PlanData, PlanName
+from hil.api_schemas.design import (
     ControllerData,
     DesignData,
     DraftData,
@@ -21,6 +19,8 @@ from hil.messages.design import (
     ModelData,
     PlanCopyWanted,
 )
+from hil.core.errors import BadInputError
+from hil.core.files import read_text
 from hil.service.api._access import Engineer, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
 from hil.service.files.catalogue import Catalogue
@@ -145,20 +145,20 @@ def _chosen(service: Service, wanted: DraftWanted) -> dict[str, Any]:
     return {**wanted.model_dump(), "model": str(path.resolve())}
 
 
-def _readable(catalogue: Catalogue[Any], told: Callable[[Catalogue[Any], str, Path], T]) -> Iterator[T]:
-    """What is told of all that can still be read."""
+def _readable(catalogue: Catalogue[Any], describe: Callable[[Catalogue[Any], str, Path], T]) -> Iterator[T]:
+    """The description of all that can still be read."""
     for name, path in catalogue.paths().items():
         with contextlib.suppress(BadInputError):
-            yield told(catalogue, name, path)
+            yield describe(catalogue, name, path)
 
 
 def _there(
-    catalogue: Catalogue[Any], told: Callable[[Catalogue[Any], str, Path], T], kind: str, name: str
+    catalogue: Catalogue[Any], describe: Callable[[Catalogue[Any], str, Path], T], kind: str, name: str
 ) -> T:
     path = catalogue.path(name)
     if path is None:
         raise missing(kind, name)
-    return told(catalogue, name, path)
+    return describe(catalogue, name, path)
 
 
 def _text(catalogue: Catalogue[Any], kind: str, name: str) -> Response:

@@ -28,7 +28,7 @@ async def from_store(
     pieces = keeper.pieces(run, file.name, start, end)
     first = await anext(
         pieces, b""
-    )  # a store that is away is told while there still is a status to tell it by
+    )  # a store that is away is reported while there still is a status to tell it by
     headers = {
         **headers,
         "accept-ranges": "bytes",

@@ -12,7 +12,7 @@ from urllib.parse import urlsplit
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from hil.messages.agent import MOST_PIECE_BYTES
+from hil.api_schemas.agent import MOST_PIECE_BYTES
 from hil.service.store import in_turns
 
 MOST_BODY_BYTES = 256_000

@@ -7,7 +7,7 @@ import time
 
 from fastapi import APIRouter, Request, Response
 
-from hil.messages.api import Health
+from hil.api_schemas.api import Health
 from hil.service.api._access import TheService, Viewer
 from hil.service.api._guard import StopAddress
 

@@ -11,7 +11,7 @@ from typing import Any
 from fastapi import APIRouter
 from fastapi.responses import StreamingResponse
 
-from hil.messages.api import BenchName
+from hil.api_schemas.api import BenchName
 from hil.service.api._access import TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError
@@ -57,7 +57,7 @@ class _Watching:
     """One viewer of one bench."""
 
     def __init__(self, service: Service, bench: str) -> None:
-        self._service, self._bench, self._said = service, bench, service.live_hub.said[bench]
+        self._service, self._bench, self._cache = service, bench, service.live_hub.caches[bench]
         self._run = -1
         self._next_bucket = 0
         self._version = -1
@@ -66,20 +66,20 @@ class _Watching:
 
     async def events(self) -> AsyncIterator[str]:
         """Whatever is new, as long as somebody takes it; a sender that has to wait skips nothing but time."""
-        told, viewers = asyncio.Event(), self._service.live_hub.viewers[self._bench]
-        viewers.add(told)
+        woken, viewers = asyncio.Event(), self._service.live_hub.viewers[self._bench]
+        viewers.add(woken)
         try:
             while not self._service.closing:
-                told.clear()
+                woken.clear()
                 news = await in_turns(self._gathered())
                 yield news or _event("here", {})
                 await asyncio.sleep(_SHORTEST_S)
                 try:
-                    await asyncio.wait_for(told.wait(), _LONGEST_S)
+                    await asyncio.wait_for(woken.wait(), _LONGEST_S)
                 except TimeoutError:
                     continue
         finally:
-            viewers.discard(told)
+            viewers.discard(woken)
 
     async def _gathered(self) -> str:
         return "".join(self._news())
@@ -90,7 +90,7 @@ class _Watching:
         if service.live_hub.version(bench) != self._version:
             self._version = service.live_hub.version(bench)
             news.append(
-                self._said.text("state", self._version, lambda: _event("state", _state(service, bench)))
+                self._cache.text("state", self._version, lambda: _event("state", _state(service, bench)))
             )
         shown = service.live_hub.run_of(bench)
         if shown is not None:
@@ -105,7 +105,7 @@ class _Watching:
         first, self._next_bucket = self._next_bucket, max(self._next_bucket, buckets.shown)
         if self._next_bucket > first:
             span = (run, first, self._next_bucket)
-            news.append(self._said.text("samples", span, lambda: _samples(run, buckets.since(first))))
+            news.append(self._cache.text("samples", span, lambda: _samples(run, buckets.since(first))))
         if shown.criteria is not self._criteria:
             self._criteria = shown.criteria
             decided = [one.model_dump(mode="json", exclude={"definition"}) for one in shown.criteria]
@@ -118,7 +118,7 @@ class _Watching:
             return ""
         self._spectrum_at_s, self._spectrum_s = now_s, shown.live.time_s
         of = (shown.run, shown.live.time_s)
-        return self._said.text("spectrum", of, lambda: _spectrum(shown.run, shown.live.spectrum()))
+        return self._cache.text("spectrum", of, lambda: _spectrum(shown.run, shown.live.spectrum()))
 
 
 def _state(service: Service, bench: str) -> dict[str, Any]:
@@ -127,7 +127,7 @@ def _state(service: Service, bench: str) -> dict[str, Any]:
     return {
         "bench": service.bench_data(bench).model_dump(mode="json"),
         "running": run.model_dump(mode="json") if run else None,
-        "told": running.told if running else "",
+        "message": running.message if running else "",
         "queue": [one.model_dump(mode="json") for one in service.waiting(bench).runs],
     }
 

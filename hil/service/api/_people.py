@@ -7,7 +7,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
-from hil.messages.api import AuditEntry, Login, Me, RunId, TokenData, TokenMade, TokenWanted
+from hil.api_schemas.api import AuditEntry, Login, Me, RunId, TokenData, TokenMade, TokenWanted
 from hil.service.api._access import Admin, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
 from hil.service.stop_post import COOKIE

@@ -6,8 +6,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Body, Request, Response
 
-from hil.messages.api import ForecastData, ForecastWanted, PlanData, PlanName
-from hil.messages.upload import KeptApart
+from hil.api_schemas.api import ForecastData, ForecastWanted, PlanData, PlanName
+from hil.api_schemas.upload import KeptApart
 from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError, missing

@@ -10,8 +10,8 @@ from fastapi.responses import JSONResponse
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.exceptions import HTTPException
 
+from hil.api_schemas.api import Problem, Record
 from hil.core.errors import BadInputError, HilError
-from hil.messages.api import Problem, Record
 from hil.service.files.uploads import NameTakenError
 from hil.service.store import DatabaseAwayError
 

@@ -6,8 +6,7 @@ from fastapi import Request
 from fastapi.dependencies.models import Dependant
 from fastapi.routing import APIRoute
 
-from hil.core.printable import printable
-from hil.core.suggestion import did_you_mean
+from hil.core.errors.wording import did_you_mean, printable
 from hil.service.api._problems import RefusedError
 
 
@@ -21,7 +20,7 @@ def refuse_unknown_query(request: Request) -> None:
         return
     route = request.scope.get("route")
     if not isinstance(route, APIRoute) or route.path.endswith("/emergency-stop"):
-        return  # nobody who wants a bench safe is refused for a word too many
+        return  # no one who wants a bench safe is refused for a word too many
     known = sorted(_names_of(route.dependant))
     for name in request.query_params:
         if name not in known:

@@ -7,8 +7,18 @@ from typing import Annotated
 from fastapi import APIRouter, Header, Query
 from starlette.responses import Response
 
+from hil.api_schemas.api import (
+    Answer,
+    BenchName,
+    Me,
+    RunChange,
+    RunData,
+    RunId,
+    RunState,
+    RunVerdict,
+    RunWanted,
+)
 from hil.execution.run_execution import RunningRun
-from hil.messages.api import Answer, BenchName, Me, RunChange, RunData, RunId, RunState, RunVerdict, RunWanted
 from hil.service.agents.remote_bench import RemoteBench
 from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._benches import known

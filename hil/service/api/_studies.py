@@ -10,11 +10,8 @@ from fastapi import APIRouter, Body, Query
 from fastapi.responses import FileResponse
 from starlette.responses import Response
 
-from hil.app.requests import DiagnoseRequest, IdentifyRequest
-from hil.core.files import read_text
-from hil.engine import RECORDING
-from hil.messages.api import OVER, Me, RunId
-from hil.messages.study import (
+from hil.api_schemas.api import OVER, Me, RunId
+from hil.api_schemas.study import (
     STUDY_OVER,
     DiagnosisData,
     DiagnosisWanted,
@@ -23,6 +20,9 @@ from hil.messages.study import (
     StudyData,
     StudyKind,
 )
+from hil.app.requests import DiagnoseRequest, IdentifyRequest
+from hil.core.files import read_text
+from hil.engine import RECORDING
 from hil.service.api._access import Engineer, TheService, Viewer
 from hil.service.api._left_files import left_file
 from hil.service.api._problems import RefusedError, missing, refuse_elsewhere

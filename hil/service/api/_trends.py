@@ -6,7 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from hil.messages.api import BenchName, PlanName, TrendData
+from hil.api_schemas.api import BenchName, PlanName, TrendData
 from hil.service.api._access import TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.trends import trends

@@ -81,7 +81,7 @@ class Archive:
             self._files.retries = 1
 
     def put(self, path: Path, name: str) -> Kept:
-        """Bring a file there and read it back: what is told is what lies there.
+        """Bring a file there and read it back: what is reported is what lies there.
 
         Raises:
             BadInputError: the file cannot be read.

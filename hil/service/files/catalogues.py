@@ -5,12 +5,12 @@ from __future__ import annotations
 import contextlib
 from pathlib import Path
 
+from hil.api_schemas.design import ControllerData, ModelData
 from hil.core.controller import Controller, controller_from_toml
 from hil.core.errors import BadInputError
+from hil.core.files.toml_file import parse_toml
 from hil.core.model import Model, load_model, model_from_dict
-from hil.core.toml_file import parse_toml
 from hil.engine.bench.bench_file import shipped
-from hil.messages.design import ControllerData, ModelData
 from hil.plant import refuse_too_stiff
 from hil.service.files.catalogue import Catalogue
 from hil.service.files.uploads import Uploads
@@ -28,7 +28,7 @@ def controller_catalogue(given: Uploads) -> Catalogue[Controller]:
 
 
 def model_data(catalogue: Catalogue[Model], name: str, path: Path) -> ModelData:
-    """What is told of a model that lies there.
+    """What is shown of a model that lies there.
 
     Raises:
         BadInputError: it cannot be read any more.
@@ -44,7 +44,7 @@ def model_data(catalogue: Catalogue[Model], name: str, path: Path) -> ModelData:
 
 
 def controller_data(catalogue: Catalogue[Controller], name: str, path: Path) -> ControllerData:
-    """What is told of a controller that lies there.
+    """What is shown of a controller that lies there.
 
     Raises:
         BadInputError: it cannot be read any more.

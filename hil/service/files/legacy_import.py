@@ -1,7 +1,7 @@
 """Folders in which earlier versions kept what was given: taken into the database when a service begins.
 
 A file goes once the database has its text under its name, so that a service that is killed goes on with the
-next one. What another service has given under the same name with another content stays, and is told.
+next one. What another service has given under the same name with another content stays, and is reported.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from hil.api_schemas.api import PlanName
+from hil.api_schemas.design import FileName
+from hil.api_schemas.upload import GivenKind, KeptApart
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
-from hil.execution.plan_files import files_of
-from hil.messages.api import PlanName
-from hil.messages.design import FileName
-from hil.messages.upload import GivenKind, KeptApart
+from hil.execution.files import files_of
 from hil.service.files.catalogue import Catalogue
 from hil.service.files.plans import Plans
 from hil.service.store import GivenStore, LogStore

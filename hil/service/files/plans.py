@@ -8,9 +8,9 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
+from hil.api_schemas.api import PlanData
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
-from hil.messages.api import PlanData
 from hil.service.files.uploads import NameTakenError, Uploads
 from hil.service.worker_pool.plan_reading import GivenPlan, data_of, given_plan, read_given
 from test_plans import Choices, Plan, library_plans, load_plan

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from hil.api_schemas.api import PlanData
+from hil.api_schemas.upload import GivenKind
 from hil.core.errors import BadInputError
-from hil.messages.api import PlanData
-from hil.messages.upload import GivenKind
 from hil.service.files.plans import Plans
 from hil.service.worker_pool import READ_WITHIN_S, READING, TooLongError, WorkerPool
 from hil.service.worker_pool.plan_reading import GivenPlan

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from hil.api_schemas.upload import GivenKind
 from hil.core.errors import BadInputError
 from hil.core.files import make_directory, of_the_system, sha256_of, write_atomically
-from hil.messages.upload import GivenKind
 from hil.service.store import GivenStore, GivenText, asked_apart
 
 

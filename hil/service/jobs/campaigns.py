@@ -18,17 +18,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from hil.app.requests import CampaignRequest
-from hil.core.errors import BenchError, HilError
-from hil.core.files import make_directory
-from hil.core.locks import HeldError, lock_on
-from hil.messages.campaign import (
+from hil.api_schemas.campaign import (
     TABLE,
     CampaignData,
     CampaignExample,
     CampaignWanted,
     PassedShare,
 )
+from hil.app.requests import CampaignRequest
+from hil.core.errors import BenchError, HilError
+from hil.core.files import make_directory
+from hil.core.files.locks import HeldError, lock_on
 from hil.service.jobs.job_process import kill_left
 from hil.service.jobs.jobs import Jobs
 from hil.service.jobs.shared_results import SharedResults
@@ -99,7 +99,7 @@ class Campaigns(Jobs[CampaignData]):
             state = "cancelled" if stopped else "waiting"
             self._records.change(campaign.id, state=state, reason="cancelled" if stopped else "")
             if not stopped:
-                self._begin(campaign.id, self._carry_out(campaign.id))
+                self._begin(campaign.id, self._execute(campaign.id))
 
     async def examples(self) -> list[CampaignExample]:
         """The built-in ones."""
@@ -107,7 +107,7 @@ class Campaigns(Jobs[CampaignData]):
         return [CampaignExample(**one) for one in found["examples"]]
 
     async def add(self, wanted: CampaignWanted, places: Places, by: str) -> CampaignData:
-        """Have one carried out in its turn.
+        """Have one executed in its turn.
 
         Raises:
             BadInputError: something is wrong with it, or too many wait already.
@@ -137,7 +137,7 @@ class Campaigns(Jobs[CampaignData]):
             **found,
         )
         self._records.keep(campaign)
-        self._begin(number, self._carry_out(number))
+        self._begin(number, self._execute(number))
         return campaign
 
     async def cancel(self, number: int) -> bool:
@@ -146,7 +146,7 @@ class Campaigns(Jobs[CampaignData]):
         if process is None:
             cancelled = await super().cancel(number)
             found = self._records.get(number)
-            if cancelled and found is not None and not self.is_over(found):  # it had not begun
+            if cancelled and found is not None and not self.is_over(found):  # it had not started
                 self._end(number, _INTERRUPTED)
             return cancelled
         self._records.change(number, state="stopping")
@@ -164,10 +164,10 @@ class Campaigns(Jobs[CampaignData]):
             return False
         self._refuse_too_many()
         self._records.change(number, state="waiting", reason="", ended_at=None)
-        self._begin(number, self._carry_out(number))
+        self._begin(number, self._execute(number))
         return True
 
-    async def _carry_out(self, number: int) -> None:
+    async def _execute(self, number: int) -> None:
         pace = self._paces[number] = _Pace()
         try:
             make_directory(self.results(number))
@@ -186,7 +186,7 @@ class Campaigns(Jobs[CampaignData]):
             self._paces.pop(number, None)
 
     async def _free(self, number: int) -> None:
-        """Wait until nobody writes there: processes that a killed service has left may still be ending.
+        """Wait until no one writes there: processes that a killed service has left may still be ending.
 
         Raises:
             BenchError: somebody still does.

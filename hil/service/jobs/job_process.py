@@ -28,7 +28,7 @@ class JobProcess:
 
         Raises:
             HilError: the folder cannot be written.
-            OSError: it cannot be begun.
+            OSError: it cannot be started.
         """
         write_request(folder, request)
         process = await start_process(
@@ -56,7 +56,7 @@ class JobProcess:
             self._process.send_signal(signal.SIGINT)
 
     def kill(self) -> None:
-        """End it and whatever it has begun, now."""
+        """End it and whatever it has started, now."""
         if self._process.returncode is None:
             _kill_session(self._process.pid)
 
@@ -82,6 +82,6 @@ def kill_left(folder: Path) -> None:
 
 
 def _kill_session(process: int) -> None:
-    """`begun` gave it a session of its own, and so a group that has its number."""
+    """`started` gave it a session of its own, and so a group that has its number."""
     with contextlib.suppress(OSError):
         os.killpg(process, signal.SIGKILL)

@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Generic, TypeVar
 
+from hil.api_schemas.api import Record
 from hil.core.files import make_directory, write_atomically
-from hil.messages.api import Record
 
 logger = logging.getLogger(__name__)
 

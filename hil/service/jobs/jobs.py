@@ -14,9 +14,9 @@ from collections.abc import AsyncIterator, Coroutine
 from pathlib import Path
 from typing import Any, Generic, TypeVar, cast
 
+from hil.api_schemas.campaign import CampaignData
+from hil.api_schemas.study import StudyData
 from hil.core.errors import BadInputError
-from hil.messages.campaign import CampaignData
-from hil.messages.study import StudyData
 from hil.service.jobs.job_process import JobProcess
 from hil.service.jobs.job_repository import JobRepository, files_in_results
 from hil.service.jobs.shared_results import SharedResults

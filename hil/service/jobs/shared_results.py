@@ -14,10 +14,10 @@ from functools import partial
 from pathlib import Path
 from typing import Generic, Protocol, TypeVar
 
+from hil.api_schemas.api import Record
 from hil.core.errors import HilError
 from hil.core.files import make_directory, sha256_of
 from hil.execution.daemon_thread import apart
-from hil.messages.api import Record
 from hil.service.archive import Archive, ArchiveAwayError, Kept
 from hil.service.jobs.job_repository import files_in_results
 from hil.service.store import DatabaseAwayError, KeptFile, ResultKind, ResultStore, SharedJob
@@ -58,7 +58,7 @@ class SharedResults(Generic[R]):
     ) -> None:
         self._store, self._kind, self._data = store, kind, data
         self._archive, self._folder = archive, folder
-        self._told: dict[int, str] | None = None  # as the database has it
+        self._published: dict[int, str] | None = None  # as the database has it
         self._facts: dict[int, tuple[R, str]] = {}  # those that have not changed need not be written anew
         self._apart: set[int] = set()
         self.waiting = 0
@@ -78,14 +78,16 @@ class SharedResults(Generic[R]):
         with contextlib.suppress(DatabaseAwayError):
             found = self._store.others(self._kind)
             names = self._store.names(self._kind) if found and self._archive is not None else {}
-            read = [self._read(told, names.get(told.id, [])) for told in found]
+            read = [self._read(published, names.get(published.id, [])) for published in found]
             return [one for one in read if one is not None]
         return []
 
     def other(self, number: int) -> R | None:
-        """One of another service; None if there is none, or a newer version has told of it."""
-        told = self._store.other(self._kind, number)
-        return None if told is None else self._read(told, [file.name for file in self._files(number)])
+        """One of another service; None if there is none, or a newer version has written it."""
+        published = self._store.other(self._kind, number)
+        return (
+            None if published is None else self._read(published, [file.name for file in self._files(number)])
+        )
 
     async def bring(self, number: int, name: str) -> Path:
         """A file of another service's, here.
@@ -123,17 +125,19 @@ class SharedResults(Generic[R]):
             ArchiveAwayError: the archive does not answer.
             DatabaseAwayError: the database does not.
         """
-        told = self._told = self._store.mine(self._kind) if self._told is None else self._told
+        published = self._published = (
+            self._store.mine(self._kind) if self._published is None else self._published
+        )
         there = {one.id: one for one in mine.to_tell()}
         for number, one in there.items():
             facts = self._facts_of(one)
-            if told.get(number) != facts and number not in self._apart:
-                self._tell(number, facts, told)
-        for number in [number for number in told if mine.is_removed(number)]:
+            if published.get(number) != facts and number not in self._apart:
+                self._tell(number, facts, published)
+        for number in [number for number in published if mine.is_removed(number)]:
             await self._remove(number)
-            del told[number]
-        wanted = [one for one in there.values() if one.id in told and mine.is_over(one)]
-        return "" if self._archive is None else await self._keep(self._archive, wanted, mine, told)
+            del published[number]
+        wanted = [one for one in there.values() if one.id in published and mine.is_over(one)]
+        return "" if self._archive is None else await self._keep(self._archive, wanted, mine, published)
 
     def _facts_of(self, one: R) -> str:
         before = self._facts.get(one.id)
@@ -141,9 +145,9 @@ class SharedResults(Generic[R]):
             before = self._facts[one.id] = one, one.model_dump_json(exclude=_OF_THE_SERVICE)
         return before[1]
 
-    def _tell(self, number: int, facts: str, told: dict[int, str]) -> None:
+    def _tell(self, number: int, facts: str, published: dict[int, str]) -> None:
         if self._store.tell(self._kind, number, facts):
-            told[number] = facts
+            published[number] = facts
         else:
             self._apart.add(number)
             logger.warning(
@@ -152,12 +156,12 @@ class SharedResults(Generic[R]):
                 number,
             )
 
-    async def _keep(self, archive: Archive, wanted: list[R], mine: Own[R], told: dict[int, str]) -> str:
+    async def _keep(self, archive: Archive, wanted: list[R], mine: Own[R], published: dict[int, str]) -> str:
         missing = set(self._store.not_kept(self._kind))
         waiting = sorted(one.id for one in wanted if one.id in missing)
         self.waiting, text = len(waiting), ""
         for number in waiting:
-            facts = told[number]
+            facts = published[number]
             try:
                 await self._keep_files(archive, number, mine.results(number))
             except (ArchiveAwayError, DatabaseAwayError):
@@ -196,13 +200,13 @@ class SharedResults(Generic[R]):
     def _files(self, number: int) -> list[KeptFile]:
         return self._store.files(self._kind, number)
 
-    def _read(self, told: SharedJob, names: list[str]) -> R | None:
+    def _read(self, published: SharedJob, names: list[str]) -> R | None:
         try:
-            found = self._data.model_validate_json(told.facts)
+            found = self._data.model_validate_json(published.facts)
         except ValueError:  # of a newer version
-            logger.warning("%s %d cannot be read as its service tells it", self._kind, told.id)
+            logger.warning("%s %d cannot be read as its service tells it", self._kind, published.id)
             return None
-        return found.model_copy(update={"place": told.place, "files": names if self._archive else []})
+        return found.model_copy(update={"place": published.place, "files": names if self._archive else []})
 
     def _name(self, number: int, name: str) -> str:
         return f"{_FOLDERS[self._kind]}/{number:06d}/{name}"

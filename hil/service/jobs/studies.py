@@ -11,9 +11,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from hil.api_schemas.study import StudyData, StudyKind
 from hil.app.requests import DiagnoseRequest, IdentifyRequest
 from hil.core.errors import HilError
-from hil.messages.study import StudyData, StudyKind
 from hil.service.jobs.job_process import kill_left
 from hil.service.jobs.jobs import Jobs
 from hil.service.jobs.shared_results import SharedResults
@@ -49,7 +49,7 @@ class Studies(Jobs[StudyData]):
         request: IdentifyRequest | DiagnoseRequest,
         within_s: float,
     ) -> StudyData:
-        """Have one carried out in its turn.
+        """Have one executed in its turn.
 
         Args:
             request: without the place for the results.
@@ -71,18 +71,18 @@ class Studies(Jobs[StudyData]):
         )
         self._records.keep(study)
         placed = replace(request, out=self.results(number).resolve())
-        self._begin(number, self._carry_out(number, placed, within_s))
+        self._begin(number, self._execute(number, placed, within_s))
         return study
 
     async def cancel(self, number: int) -> bool:
         """End one; what a diagnosis knows by then it writes down. False if it is over."""
         found = await super().cancel(number)
         study = self._records.get(number)
-        if found and study is not None and not self.is_over(study):  # it had not begun
+        if found and study is not None and not self.is_over(study):  # it had not started
             self._end(number, "cancelled", "cancelled")
         return found
 
-    async def _carry_out(
+    async def _execute(
         self, number: int, request: IdentifyRequest | DiagnoseRequest, within_s: float
     ) -> None:
         try:

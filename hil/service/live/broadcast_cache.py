@@ -12,7 +12,7 @@ class BroadcastCache:
         self._newest: dict[str, tuple[object, str]] = {}
 
     def text(self, kind: str, of: Hashable, make: Callable[[], str]) -> str:
-        """What was said of it, or what `make` says."""
+        """What was stated of it, or what `make` says."""
         known, text = self._newest.get(kind, (None, ""))
         if known != of:
             text = make()

@@ -44,7 +44,7 @@ class LiveHub:
     ) -> None:
         self._benches, self._running = benches, running
         self.viewers: defaultdict[str, set[asyncio.Event]] = defaultdict(set)
-        self.said: defaultdict[str, BroadcastCache] = defaultdict(BroadcastCache)  # of each bench
+        self.caches: defaultdict[str, BroadcastCache] = defaultdict(BroadcastCache)  # of each bench
         self._runs: dict[str, LiveView] = {}
         self._version: defaultdict[str, int] = defaultdict(int)
 

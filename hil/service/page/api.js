@@ -41,7 +41,7 @@ export async function findStopPost() {
 }
 
 // Both ways at the same moment; the first that has taken it is enough. A flooded service closes connections: a way
-// on which nobody answers is tried again.
+// on which no one answers is tried again.
 export async function stopNow(path) {
   const untilMs = Date.now() + STOP_MS;
   const insist = async (way) => {

@@ -19,7 +19,7 @@ export function beginCampaigns(act, may) {
   async function begin() {
     const beside = await Promise.all([...at("campaign-beside").files].map(async (file) => [file.name, await file.text()]));
     const campaign = await post("/campaigns", { text: at("campaign-text").value, files: Object.fromEntries(beside) });
-    at("campaign-told").textContent = `Campaign ${campaign.id} is queued: ${campaign.simulations} simulations.`;
+    at("campaign-message").textContent = `Campaign ${campaign.id} is queued: ${campaign.simulations} simulations.`;
     await look();
   }
 

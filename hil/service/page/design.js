@@ -79,10 +79,10 @@ async function follow() {
   while (wanted) {
     const { body, since } = wanted;
     wanted = null;
-    if (!found) at("design-told").textContent = "Reading the model …";
+    if (!found) at("design-message").textContent = "Reading the model …";
     const answer = await act(() => post("/drafts", body));
     if (!answer || body.model !== at("design-model").value || body.stabilisation !== at("design-kind").value) continue; // stale
-    if (!found) at("design-told").textContent = "";
+    if (!found) at("design-message").textContent = "";
     found = answer;
     show();
     requestAnimationFrame(() => performance.measure("drafted", { start: since, end: performance.now() }));
@@ -127,13 +127,13 @@ function draw() {
 }
 
 const designed = async () => {
-  at("design-told").textContent = "Designing: every plant that the uncertainty allows …";
+  at("design-message").textContent = "Designing: every plant that the uncertainty allows …";
   try {
     const design = await post("/designs", { ...chosen(), name: at("design-name").value || undefined });
     const worst = `The worst of ${design.source} has |S| ${figure(design.worst_sensitivity_peak, "", 2)}; ${Math.round(100 * design.stable_share)} % are stable.`;
     at("design-warnings").replaceChildren(said(worst, "quiet"), ...design.warnings.map((one) => said(one, "bad")));
     return design;
-  } finally { at("design-told").textContent = ""; }
+  } finally { at("design-message").textContent = ""; }
 };
 
 async function save() {
@@ -142,7 +142,7 @@ async function save() {
   await ask("PUT", `/controllers/${name}`, controller);
   await listControllers();
   at("design-controller").value = name;
-  at("design-told").textContent = `Saved as ${name}; plans can load it.`;
+  at("design-message").textContent = `Saved as ${name}; plans can load it.`;
 }
 
 async function download() {
@@ -155,6 +155,6 @@ async function download() {
 async function use(planMade) {
   const plan = at("design-plan").value, controller = at("design-controller").value;
   const made = await post(`/plans/${plan}/copies`, { name: at("design-copy").value || `${plan}-${controller}`.slice(0, 64), controllers: { [at("design-file").value]: controller } });
-  at("design-told").textContent = `The plan ${made.name} is saved and selected under 'Start a plan'.`;
+  at("design-message").textContent = `The plan ${made.name} is saved and selected under 'Start a plan'.`;
   await planMade(made.name);
 }

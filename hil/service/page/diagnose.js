@@ -34,7 +34,7 @@ async function choices() {
 async function save() {
   const name = at("diagnose-name").value;
   await saveModel(found.study, "model.toml", name);
-  at("diagnose-told").textContent = `Saved as ${name}.`;
+  at("diagnose-message").textContent = `Saved as ${name}.`;
   await listModels();
   await choices();
 }
@@ -72,7 +72,7 @@ async function separate(file) {
   const name = text.match(/^name:\s*["']?([A-Za-z0-9_.-]+)/m)[1];
   await ask("PUT", `/plans/${name}`, text);
   const run = await post("/runs", { plan: name, bench: bench() });
-  at("diagnose-told").textContent = `Run ${run.id} is queued: ${run.title || name}.`;
+  at("diagnose-message").textContent = `Run ${run.id} is queued: ${run.title || name}.`;
 }
 
 // The worst recording of each channel and band; a colour's strength goes with the logarithm of error over noise.

@@ -22,7 +22,7 @@ export function beginIdentification(bench, act, may) {
 async function save() {
   const name = at("identify-name").value;
   await saveModel(found.study, found.chain ? "physical.toml" : "model.toml", name);
-  at("identify-told").textContent = `Saved as ${name}: available for design and diagnosis.`;
+  at("identify-message").textContent = `Saved as ${name}: available for design and diagnosis.`;
   await listModels();
 }
 

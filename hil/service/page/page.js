@@ -111,7 +111,7 @@ function clear() {
   dirty = true;
 }
 
-function showState({ bench: now, running: run, queue, told }) {
+function showState({ bench: now, running: run, queue, message }) {
   running = run;
   at("banner").className = `banner ${now.state}`;
   at("bench-title").textContent = `${now.title || now.name}${now.simulated ? " (simulated)" : ""}${now.machine ? `, at ${now.machine}` : ""}${now.lease ? `, for ${now.lease} alone` : ""}`;
@@ -121,9 +121,9 @@ function showState({ bench: now, running: run, queue, told }) {
   at("why").textContent = run && now.state === "running" ? `run ${run.id}, by ${run.requested_by}: ${run.doing}` : now.why;
   at("share").hidden = !run;
   at("share").value = run?.share ?? 0;
-  at("told").hidden = !told;
-  at("told").textContent = told;
-  at("answer").hidden = !told || !may("operator") || now.away_since !== null;
+  at("message").hidden = !message;
+  at("message").textContent = message;
+  at("answer").hidden = !message || !may("operator") || now.away_since !== null;
   const held = run?.doing.startsWith("held") ?? false;
   for (const id of ["pause", "resume", "end"]) at(id).hidden = !run || !may("operator") || (id === "pause" ? held : id === "resume" && !held) || (id !== "end" && now.away_since !== null);
   at("reset").hidden = now.state !== "emergency_stop" || run !== null || !may("engineer");

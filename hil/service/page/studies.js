@@ -53,7 +53,7 @@ export class Studies {
     at(`${this.id}-row`).hidden = !study;
     at(`${this.id}-cancel`).hidden = !study || study.place !== "" || OVER.includes(study.state);
     at(`${this.id}-remove`).hidden = !study || study.place !== "" || !OVER.includes(study.state);
-    at(`${this.id}-state`).replaceChildren(...(study ? [badge(study.state)] : []), [study?.place, study?.reason].filter(Boolean).map((told) => ` ${told}`).join(";"));
+    at(`${this.id}-state`).replaceChildren(...(study ? [badge(study.state)] : []), [study?.place, study?.reason].filter(Boolean).map((text) => ` ${text}`).join(";"));
     const key = study ? `${study.id} ${study.state} ${study.files.length}` : "";
     if (key !== this.shown) { this.shown = key; await this.found(study); }
     if (all.some((one) => !OVER.includes(one.state))) this.timer = setTimeout(() => this.act(() => this.look()), LOOK_MS);

@@ -5,7 +5,7 @@ import { TrendChart } from "./chart.js";
 import { at, offer } from "./dom.js";
 import { number } from "./frame.js";
 
-const LEAST = 5; // values of which a scatter is told
+const LEAST = 5; // values of which a scatter is reported
 let found = [], chart = null, duts = new Set(), of = "";
 
 export async function showTrends(bench, plan) {

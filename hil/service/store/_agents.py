@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from sqlalchemy import Engine, delete, select, update
 from sqlalchemy.orm import sessionmaker
 
-from hil.messages.agent import AgentBench
+from hil.api_schemas.agent import AgentBench
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now_there
 from hil.service.store._tables import AgentRow
@@ -55,7 +55,7 @@ class AgentStore:
             session.add(row)
 
     def stop(self, bench: str, by: str) -> None:
-        """Keep that its agent has to be told of an emergency stop; `by` is '' once it has confirmed that."""
+        """Keep that its agent has to learn of an emergency stop; `by` is '' once it has confirmed that."""
         with self._transaction() as session:
             session.execute(update(AgentRow).where(AgentRow.bench == bench).values(stop_by=by[:100]))
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from sqlalchemy import Engine, select, text
 from sqlalchemy.orm import Session, sessionmaker
 
-from hil.messages.api import AuditEntry
+from hil.api_schemas.api import AuditEntry
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now
 from hil.service.store._tables import AuditRow

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from sqlalchemy import ColumnElement, Engine, func, select, update
 from sqlalchemy.orm import sessionmaker
 
-from hil.messages.api import OVER
+from hil.api_schemas.api import OVER
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import now
 from hil.service.store._tables import FileRow, RunRow
@@ -64,5 +64,5 @@ class FileStore:
 
 
 def _waiting(service: str) -> tuple[ColumnElement[bool], ...]:
-    begun = RunRow.state.in_(OVER), RunRow.started_at.is_not(None)
-    return (*begun, RunRow.kept_at.is_(None), RunRow.service.in_((service, "")))
+    started = RunRow.state.in_(OVER), RunRow.started_at.is_not(None)
+    return (*started, RunRow.kept_at.is_(None), RunRow.service.in_((service, "")))

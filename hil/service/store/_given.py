@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from sqlalchemy import Engine, or_, select, update
 from sqlalchemy.orm import Session, sessionmaker
 
-from hil.messages.upload import GivenKind
+from hil.api_schemas.upload import GivenKind
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now
 from hil.service.store._tables import GivenRow

@@ -7,7 +7,7 @@ import datetime
 from sqlalchemy import Engine, delete, or_
 from sqlalchemy.orm import sessionmaker
 
-from hil.messages.api import LeaseData
+from hil.api_schemas.api import LeaseData
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now_there
 from hil.service.store._tables import LeaseRow
@@ -38,7 +38,7 @@ class LeaseStore:
         return LeaseData(bench=bench, holder=holder, until=until) if taken else None
 
     def give_back(self, bench: str) -> None:
-        """Nobody has it any more."""
+        """No one has it any more."""
         with self._transaction() as session:
             session.execute(delete(LeaseRow).where(LeaseRow.bench == bench))
 

@@ -123,7 +123,7 @@ def _for_driver(url: URL) -> tuple[URL, dict[str, Any]]:
 def _cannot(error: Exception) -> str:
     """Why, without what may be a password."""
     kinds = {ImportError: "its driver is not installed", ArgumentError: "it is not a URL"}
-    known = next((said for kind, said in kinds.items() if isinstance(error, kind)), "")
+    known = next((words for kind, words in kinds.items() if isinstance(error, kind)), "")
     if isinstance(error, OSError):
         return f"sslrootcert cannot be read: {error.strerror}"
     ours = str(error).startswith(("sslmode is", "neither"))

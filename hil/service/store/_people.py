@@ -9,7 +9,7 @@ import secrets
 from sqlalchemy import ColumnElement, Engine, delete, func, or_, select, update
 from sqlalchemy.orm import sessionmaker
 
-from hil.messages.api import Role, TokenData, TokenMade
+from hil.api_schemas.api import Role, TokenData, TokenMade
 from hil.service.stop_post import Owner
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now

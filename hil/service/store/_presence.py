@@ -1,4 +1,4 @@
-"""Whether the database answers: known at once, so that nobody waits twice for one that is away."""
+"""Whether the database answers: known at once, so that no one waits twice for one that is away."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _LONGEST = 200
 _asking = contextvars.ContextVar("asking", default=False)
 
 logger = logging.getLogger(__name__)
-# A connection that is gone cannot be closed properly either: what happened is told here, once.
+# A connection that is gone cannot be closed properly either: what happened is reported here, once.
 logging.getLogger("sqlalchemy.pool").setLevel(logging.CRITICAL)
 
 
@@ -94,11 +94,11 @@ class Presence:
         return self._away_for(failure)
 
     def _away_for(self, failure: BaseException) -> DatabaseAwayError:
-        said = in_words(failure)
+        reason = in_words(failure)
         if not self._why:
             self._since = f"{datetime.datetime.now(datetime.UTC):%Y-%m-%d %H:%M:%S} UTC"
-            logger.error("the database is away: %s: %s", self._shown, said)
-        self._why = said
+            logger.error("the database is away: %s: %s", self._shown, reason)
+        self._why = reason
         return self.error()
 
 

@@ -57,7 +57,7 @@ class ResultStore:
             return put(session, ResultRow, row, where=ResultRow.service == self._service)
 
     def mine(self, kind: ResultKind) -> dict[int, str]:
-        """Facts by number of those that this service has told."""
+        """Facts by number of those that this service has published."""
         chosen = select(ResultRow).where(ResultRow.kind == kind, ResultRow.service == self._service)
         with self._transaction() as session:
             return {row.id: row.facts for row in session.scalars(chosen)}
@@ -69,7 +69,7 @@ class ResultStore:
             return list(session.scalars(chosen.where(ResultRow.kept_at.is_(None)).order_by(ResultRow.id)))
 
     def all_kept(self, kind: ResultKind, number: int, facts: str) -> None:
-        """The archive has all files of one as it is told with these facts."""
+        """The archive has all files of one as it is published with these facts."""
         same = ResultRow.kind == kind, ResultRow.id == number, ResultRow.facts == facts
         with self._transaction() as session:
             session.execute(update(ResultRow).where(*same).values(kept_at=now()))

@@ -11,9 +11,9 @@ from sqlalchemy import ColumnElement, Engine, func, select, update
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session, sessionmaker
 
+from hil.api_schemas.agent import TakenRun
+from hil.api_schemas.api import RunData, RunState, TrendPoint
 from hil.core.result import CriterionResult, RunResult
-from hil.messages.agent import TakenRun
-from hil.messages.api import RunData, RunState, TrendPoint
 from hil.service.store._benches import HELD_S
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now, now_there
@@ -130,7 +130,7 @@ class RunStore:
             return None if row is None else _data(row)
 
     def take(self, run: int, service: str) -> TakenRun | None:
-        """Mark a queued run as running, before anything of it is begun.
+        """Mark a queued run as running, before anything of it is started.
 
         None if it is not queued any more, or its bench is not this service's any more (`BenchStore.hold`).
         """
@@ -153,13 +153,13 @@ class RunStore:
             return _taken(row) if row is not None and row.state == "running" else None
 
     def running(self, service: str) -> list[RunData]:
-        """Runs that a service has begun and that have not ended, as far as is written."""
+        """Runs that a service has started and that have not ended, as far as is written."""
         mine = RunRow.state == "running", RunRow.service.in_((service, ""))
         with self._transaction() as session:
             return [_data(row) for row in session.scalars(select(RunRow).where(*mine))]
 
     def of_service(self, run: int, service: str) -> RunData | None:
-        """A run, if that service, or agent, has begun it and nobody else has its files."""
+        """A run, if that service, or agent, has started it and no one else has its files."""
         with self._transaction() as session:
             row = session.get(RunRow, run)
             return _data(row) if row is not None and row.service == service else None
@@ -254,8 +254,8 @@ def _ending(
     state: RunState, exit_code: int | None, result: RunResult | None, reason: str
 ) -> dict[str, object]:
     changes: dict[str, object] = {"state": state, "ended_at": now(), "exit_code": exit_code}
-    said = reason or (result.reason if result else "")
-    changes["reason"] = said.replace("\0", " ")  # PostgreSQL keeps no text with it
+    why = reason or (result.reason if result else "")
+    changes["reason"] = why.replace("\0", " ")  # PostgreSQL keeps no text with it
     if result is not None:
         changes |= {"verdict": result.verdict, "safe_state": result.safe_state}
     return changes

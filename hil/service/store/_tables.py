@@ -15,7 +15,7 @@ class Base(DeclarativeBase):
 
 
 class RunRow(Base):
-    """A run; `plan_text` is the plan with its variables as chosen, `service` the one that has begun it.
+    """A run; `plan_text` is the plan with its variables as chosen, `service` the one that has started it.
 
     `kept_at`: when the archive had all of its files.
     """
@@ -106,7 +106,7 @@ class FileRow(Base):
 
 
 class ResultRow(Base):
-    """A study or a campaign of a service, for all; `facts`: what is told of it, as JSON.
+    """A study or a campaign of a service, for all; `facts`: its description as JSON.
 
     `place` is where its service runs, in words; `kept_at`: when the archive had all of its files.
     """

@@ -12,11 +12,10 @@ from typing import Any
 from hil.analysis.campaigns import CampaignFile, campaign_from_text, library_campaigns, load_campaign_file
 from hil.campaign import Tally, load_setting, write_table
 from hil.core.errors import BadInputError, HilError
+from hil.core.errors.wording import did_you_mean, printable
 from hil.core.files import make_directory, read_text, write_atomically
-from hil.core.printable import printable
-from hil.core.suggestion import did_you_mean
 from hil.engine.bench.bench_file import shipped, shipped_benches
-from hil.execution.plan_files import files_of
+from hil.execution.files import files_of
 from hil.service.worker_pool.drawn_numbers import number
 from test_plans import plan_from_text
 from test_plans.yaml_document import KeyPath

@@ -33,12 +33,12 @@ def comparison(first: list[str], other: list[str]) -> dict[str, Any]:
         found = compare([one, two])
     except BadInputError as error:
         raise _by_name(error, one, two) from None
-    told = differences(one, two)
+    all_differences = differences(one, two)
     return {
         "plan": one.result.plan,
         "verdicts": [one.result.verdict, two.result.verdict],
         "distance": found.distances[1],
-        "differences": [vars(each) for each in told[:_MOST_DIFFERENCES]],
+        "differences": [vars(each) for each in all_differences[:_MOST_DIFFERENCES]],
         "notes": list(found.notes),
         "criteria": [
             {

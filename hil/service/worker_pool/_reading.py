@@ -1,4 +1,4 @@
-"""Reads what people give before the service takes it: whatever it is, it holds nobody up here."""
+"""Reads what people give before the service takes it: whatever it is, it holds no one up here."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from hil.core.controller import controller_from_toml
+from hil.core.files.toml_file import parse_toml
 from hil.core.model import model_from_dict
-from hil.core.toml_file import parse_toml
 from hil.service.worker_pool.plan_reading import read_given
 
 

@@ -25,7 +25,7 @@ class TooLongError(BenchError):
 
 
 class WorkerPool:
-    """A process that answers one question after the other; begun with the first, ended when nobody asks.
+    """A process that answers one question after the other; started with the first, ended when no one asks.
 
     Args:
         niceness: added to that of the service.
@@ -76,7 +76,7 @@ class WorkerPool:
         self._process = None
 
     async def _answer(self, question: bytes) -> bytes:
-        """The line that answers; a process that had just ended for want of questions is begun anew."""
+        """The line that answers; a process that had just ended for want of questions is started again."""
         was_there = self._process is not None
         line = await self._ask(question)
         return line or (await self._ask(question) if was_there else b"")

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from hil.api_schemas.api import PlanData, VariableData
 from hil.core.errors import BadInputError
-from hil.core.printable import printable
-from hil.execution.plan_files import files_of
-from hil.messages.api import PlanData, VariableData
+from hil.core.errors.wording import printable
+from hil.execution.files import files_of
 from test_plans import Plan, plan_from_text
 
 
@@ -34,7 +34,7 @@ def read_given(name: str, text: str, folder: Path) -> GivenPlan:
                 where=where,
                 fix="a plan on the service can only load controllers of the service, by name",
             )
-    plan = plan_from_text(text, where, folder, to_carry_out=True)
+    plan = plan_from_text(text, where, folder, to_execute=True)
     if plan.name != name:
         raise BadInputError(
             f"the name in the plan is '{plan.name}'", where=where, fix="upload it under that name"

@@ -7,9 +7,9 @@ import pytest
 
 from drivers.ram._decoder import DaqDecoder
 from drivers.ram._packing import packed
-from hil.core.frames import FRAME, FrameBlock
-from hil.core.symbols import Symbol
-from hil.core.xcp import TimeStamps
+from hil.core.can.frames import FRAME, FrameBlock
+from hil.core.can.symbols import Symbol
+from hil.core.can.xcp import TimeStamps
 
 SYMBOLS = [Symbol("a", 0, "f4"), Symbol("b", 4, "i2", "", 0.5, 1.0), Symbol("c", 6, "f8")]
 STAMPS = TimeStamps(2, 1e-4, False)

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drivers.ram._packing import bits_of, packed
+from hil.core.can.frames import most_frame_bits
+from hil.core.can.symbols import Symbol
 from hil.core.errors import BenchError
-from hil.core.frames import most_frame_bits
-from hil.core.symbols import Symbol
 
 FLOATS = [Symbol(f"f{n}", 0x100 + 4 * n, "f4") for n in range(8)]
 

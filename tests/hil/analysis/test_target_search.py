@@ -1,4 +1,4 @@
-"""What brings a predicted run to target figures: sizes, targets, search, conditions and what is told."""
+"""What brings a predicted run to target figures: sizes, targets, search, conditions and what is reported."""
 
 import itertools
 from dataclasses import replace
@@ -24,8 +24,8 @@ from hil.analysis.target_search._separating import Separating
 from hil.analysis.target_search._trial import Outcome
 from hil.core.effects import EFFECTS, Stage
 from hil.core.errors import BadInputError
+from hil.core.files.toml_file import parse_toml
 from hil.core.model import EffectUse, load_model, model_from_dict
-from hil.core.toml_file import parse_toml
 from hil.engine import load_bench
 from hil.engine.prediction.prediction import predict
 from reports.target_search import caution, explanation_html, explanation_pdf
@@ -41,7 +41,7 @@ CRITERIA = "[{segment: s, metric: peak_shaft_torque}]"
 PEAK = "s.peak_shaft_torque"
 
 
-def carry_out(checked, model, held):
+def execute(checked, model, held):
     simulation = SIM.simulation.model_copy(update={"rmcu": dict(held)})
     return predict(checked, SIM.model_copy(update={"simulation": simulation}), model)
 
@@ -81,7 +81,7 @@ def test_a_guess_takes_the_place_of_an_effect_that_the_model_has():
 
 
 def test_the_base_model_at_its_own_figure_costs_nothing():
-    trial = Trial(BASE, carry_out, targets(1.0))
+    trial = Trial(BASE, execute, targets(1.0))
     figure = trial.of(Guess({}, {})).figures[PEAK]
     assert figure is not None
     assert trial.of(Guess({}, {})).cost(targets(figure, first_seconds=0.7)) == pytest.approx(0.0)
@@ -91,7 +91,7 @@ def test_the_base_model_at_its_own_figure_costs_nothing():
 
 
 def test_a_guess_that_cannot_be_carried_out_has_no_figure_and_a_high_cost():
-    trial = Trial(BASE, carry_out, targets(400.0))
+    trial = Trial(BASE, execute, targets(400.0))
     refused = Guess({}, {"wheel_radius": -1.0})
     outcome = trial.of(refused)
     assert outcome.figures == {PEAK: None}
@@ -121,7 +121,7 @@ def test_where_a_figure_has_many_hollows_the_deepest_is_found():
 
     ripple = next(c for c in candidates(BASE, 326.0, {}) if c.id == "wheel_order_disturbance")
     search = Search(cast("Trial", Hollows()), 300, 1, lambda text, share: None, lambda: False)
-    search.carry_out((ripple,))
+    search.execute((ripple,))
     assert search.best[0].cost < 1e-3
     assert search.done <= 310
     places = search.places((ripple,), 5)
@@ -132,7 +132,7 @@ def test_where_a_figure_has_many_hollows_the_deepest_is_found():
 @pytest.fixture(scope="module")
 def found():
     wanted = targets(430.0, first_seconds=0.7, open={"k_i_dfc": (0.001, 0.01), "sigma": (0.5, 6.0)})
-    return explain(BASE, carry_out, wanted, evaluations=60, seed=1)
+    return explain(BASE, execute, wanted, evaluations=60, seed=1)
 
 
 @pytest.mark.slow
@@ -147,7 +147,7 @@ def test_a_figure_that_can_be_reached_is_reached(found):
 
 @pytest.mark.slow
 def test_the_same_seed_gives_the_same_rivals(found):
-    again = explain(BASE, carry_out, found.targets, evaluations=60, seed=1)
+    again = explain(BASE, execute, found.targets, evaluations=60, seed=1)
     assert [r.guess for r in again.rivals] == [r.guess for r in found.rivals]
 
 
@@ -173,13 +173,13 @@ def test_what_was_found_can_be_used(found):
 def test_stopped_at_once_it_tells_what_it_knows():
     asked = iter([False] * 3)
     wanted = targets(430.0)
-    found = explain(BASE, carry_out, wanted, evaluations=60, stopped=lambda: next(asked, True))
+    found = explain(BASE, execute, wanted, evaluations=60, stopped=lambda: next(asked, True))
     assert (found.interrupted, found.evaluations) == (True, 3)
     assert len(found.rivals) >= 1
 
 
 def test_nothing_found_is_said():
-    found = explain(BASE, carry_out, targets(430.0), evaluations=60, stopped=lambda: True)
+    found = explain(BASE, execute, targets(430.0), evaluations=60, stopped=lambda: True)
     assert found.rivals == ()
     assert not found.reached
     assert found.verdict == "No run was predicted."
@@ -190,7 +190,7 @@ def test_the_shipped_targets_are_the_papers():
     wanted = read_targets(BENCHES / "paper_targets.toml", None, {})
     assert sorted(wanted.values.values()) == [534.0, 564.0, 723.0]
     assert wanted.response is not None
-    base = Trial(BASE, carry_out, wanted).misfit(BASE)
+    base = Trial(BASE, execute, wanted).misfit(BASE)
     for name, limits in wanted.response.within.items():
         assert all(value <= limit for value, limit in zip(base[name], limits, strict=True))
 
@@ -207,7 +207,7 @@ def test_the_bench_of_the_papers_car_holds_every_condition():
     axle = load_model(bench.simulation.model)
     assert axle.parameters == BASE.parameters
     guess = Guess({use.id: _numbers(use) for use in axle.effects}, bench.simulation.rmcu)
-    trial = Trial(BASE, carry_out, wanted)
+    trial = Trial(BASE, execute, wanted)
     conditions = conditions_of(guess, trial.of(guess), trial)
     assert len(conditions) == 17
     assert [condition for condition in conditions if not condition.holds] == []
@@ -247,11 +247,11 @@ def test_a_plan_without_steps_can_be_explained_and_one_without_torque_says_so():
   - chirp: {segment: s, quantity: motor_torque, from_hz: 1, to_hz: 30, duration_s: 2, amplitude_nm: 10}
 """
     aimed = Targets(plan(chirp, CRITERIA), {PEAK: 90.0})
-    found = explain(BASE, carry_out, aimed, evaluations=20, among=("dead_time",))
+    found = explain(BASE, execute, aimed, evaluations=20, among=("dead_time",))
     assert found.rivals
     still = BASE.with_effects(EffectUse("torque_deadband", {"half_width_nm": 50.0}))
     with pytest.raises(BadInputError, match="applies no torque"):
-        explain(still, carry_out, aimed, evaluations=20)
+        explain(still, execute, aimed, evaluations=20)
 
 
 def test_what_is_no_step_does_not_settle(tmp_path):

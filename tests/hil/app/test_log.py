@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from hil.app.log import LOG
-from hil.cli import schema
 from hil.cli._app import guarded
+from hil.cli.commands import schema
 
 RECORDING = "time_s,motor_torque_ref_nm,motor_speed_rad_s\n" + "".join(f"{k / 10},1,2\n" for k in range(20))
 

@@ -115,7 +115,7 @@ def test_without_dask_it_says_what_to_install(tmp_path, capsys, monkeypatch):
 
 
 @contextlib.contextmanager
-def begun(*arguments, env=None):
+def started(*arguments, env=None):
     """The command in a process group of its own, as from a terminal."""
     process = subprocess.Popen(
         [HIL, "campaign", *map(str, arguments)],
@@ -160,7 +160,7 @@ def refuse_loss(out, count):
 @pytest.mark.slow
 def test_ctrl_c_keeps_what_is_done_and_says_how_to_go_on(tmp_path):
     file, out = written(tmp_path, LONG), tmp_path / "out"
-    with begun(file, "--workers", 2, "--out", out) as process:
+    with started(file, "--workers", 2, "--out", out) as process:
         await_parts(out, 1, process)
         os.killpg(process.pid, signal.SIGINT)
         said, err = process.communicate(timeout=60)
@@ -177,7 +177,7 @@ def test_ctrl_c_keeps_what_is_done_and_says_how_to_go_on(tmp_path):
 @pytest.mark.slow
 def test_nothing_is_lost_or_done_twice_when_a_worker_and_then_the_command_are_killed(tmp_path):
     file, out = written(tmp_path, LONG), tmp_path / "out"
-    with begun(file, "--workers", 2, "--out", out) as process:
+    with started(file, "--workers", 2, "--out", out) as process:
         await_parts(out, 1, process)
         os.kill(workers_of(process)[0], signal.SIGKILL)
         await_parts(out, 3, process)
@@ -206,7 +206,7 @@ def test_a_simulation_that_kills_its_workers_is_found_and_costs_no_other(tmp_pat
     file, out = written(tmp_path, text), tmp_path / "out"
     (tmp_path / "sitecustomize.py").write_text(DEADLY)
     path = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
-    with begun(file, "--workers", 2, "--out", out, env={**os.environ, "PYTHONPATH": path}) as process:
+    with started(file, "--workers", 2, "--out", out, env={**os.environ, "PYTHONPATH": path}) as process:
         said, err = process.communicate(timeout=300)
     assert (process.returncode, err) == (0, "")
     assert "1 with: the process that simulated it died each time" in said
@@ -236,7 +236,7 @@ def test_a_scheduler_that_is_killed_is_exit_code_3_and_gone_on_with(tmp_path):
             [folder / "dask", "worker", where, *host, "--nthreads", "1", "--no-dashboard", "--no-nanny"],
             **common,
         )
-        with begun(file, "--scheduler", where, "--out", out) as process:
+        with started(file, "--scheduler", where, "--out", out) as process:
             await_parts(out, 1, process)
             scheduler.kill()
             _, err = process.communicate(timeout=60)

@@ -24,14 +24,14 @@ criteria:
 def check(tmp_path, capsys):
     """Exit code and standard output of `hil check` on a plan with a limit of the shaft's peak torque."""
 
-    def carry_out(limit, *options):
+    def execute(limit, *options):
         (tmp_path / "quick.yaml").write_text(PLAN.replace("LIMIT", str(limit)))
         code = guarded(["check", str(tmp_path / "quick.yaml"), *options])
         shown = capsys.readouterr()
         assert shown.err == ""
         return code, shown.out
 
-    return carry_out
+    return execute
 
 
 def test_peaks_stand_beside_limits_and_criteria_beside_theirs(check):

@@ -1,4 +1,4 @@
-"""Which bench a command takes that nobody has named one to: the own bench.toml, else the simulated one."""
+"""Which bench a command takes that no one has named one to: the own bench.toml, else the simulated one."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def write_bench(folder: Path, name: str, source: str = "sim.toml") -> None:
 
 
 def checked_on(capsys: pytest.CaptureFixture[str], plan: str = "plan.yaml") -> tuple[str, str]:
-    """The bench, and what was said of it."""
+    """The bench, and what was stated of it."""
     assert guarded(["check", plan, "--json"]) == 0
     captured = capsys.readouterr()
     return json.loads(captured.out)["bench"], captured.err

@@ -23,7 +23,7 @@ import numpy as np
 import pytest
 
 from drivers import read_rmcu
-from hil.core.frames import SENT_BY_HOST, FrameBlock, joined
+from hil.core.can.frames import SENT_BY_HOST, FrameBlock, joined
 from hil.core.recording import Recording, read_recording, run_of
 from tests.benches_for_tests import SIM
 from tests.hil.cli.test_commands import HIL, hil
@@ -288,7 +288,7 @@ def test_a_command_that_is_killed_or_frozen_leaves_a_bench_that_its_process_make
     stored = run_of(readable(tmp_path))
     assert stored is not None
     assert (stored.verdict, stored.safe_state) == ("error", "confirmed")
-    assert stored.end_steps.startswith("carried out: ramp_down")
+    assert stored.end_steps.startswith("executed: ramp_down")
     words = "the command of this run has ended" if number == signal.SIGKILL else "has been silent for"
     assert words in stored.reason
     if number == signal.SIGSTOP:

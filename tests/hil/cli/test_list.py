@@ -8,9 +8,9 @@ import json
 import pytest
 
 from hil.cli._app import guarded
-from hil.cli.list import _tell
+from hil.cli.commands.list import _tell
 from hil.core.effects import EFFECTS
-from hil.core.shipped import shipped_names
+from hil.core.files.shipped import shipped_names
 from hil.engine.bench.device_kinds import KINDS
 from test_plans import METRICS, STEPS, library_plans
 

@@ -4,8 +4,7 @@ import json
 
 import pytest
 
-from hil.cli._app import guarded
-from hil.cli._multi_value_options import each_with_its_option
+from hil.cli._app import each_with_its_option, guarded
 from hil.core.model import save_model
 from hil.core.recording import write_recording
 from tests.hil.analysis.diagnosis.one_recording import MODEL, recorded

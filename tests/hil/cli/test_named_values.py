@@ -2,8 +2,7 @@
 
 import pytest
 
-from hil.cli._choices import choices_of
-from hil.cli._named_values import named_numbers, named_values
+from hil.cli.inputs import choices_of, named_numbers, named_values
 from hil.core.errors import BadInputError
 
 

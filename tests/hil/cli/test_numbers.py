@@ -11,8 +11,8 @@ from rich.console import Console
 from hil.analysis.tuning import confirmation
 from hil.app.autotune.loop import _off
 from hil.app.tuning.confirmation import Ran
-from hil.cli import tune
-from hil.cli._output import print_criteria
+from hil.cli.commands import tune
+from hil.cli.output import print_criteria
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from hil.cli._terminal import StandardTerminal, operators_terminal
+from hil.cli.terminal import StandardTerminal, operators_terminal
 from hil.core.recording import read_recording
 from tests.benches_for_tests import SIM
 from tests.hil.cli.test_commands import HIL
@@ -98,7 +98,7 @@ def test_a_prompt_without_an_answer_ends_the_run_like_an_operators_stop(tmp_path
     code, result = Operator(tmp_path, plan(timeout_s=0.5)).ended()
     assert (code, result["safe_state"]) == (130, "confirmed")
     assert "no answer to 'Is the cage shut?' within 0.5 s" in result["reason"]
-    assert result["end_steps"].startswith("carried out: ramp_down")
+    assert result["end_steps"].startswith("executed: ramp_down")
 
 
 @pytest.mark.slow
@@ -139,7 +139,7 @@ def test_a_bench_in_a_process_of_its_own_is_led_from_the_terminal_of_its_command
     ended, result = operator.ended()
     assert (ended, result["safe_state"]) == (code, "confirmed"), result["reason"]
     assert (result["emergency_stop"] is not None) == (typed == "e")
-    assert result["end_steps"].startswith("carried out" if typed != "e" else "not carried out")
+    assert result["end_steps"].startswith("executed" if typed != "e" else "not executed")
     assert operator.seen.count("error:") == 1
     assert "html" in result["files"]
 
@@ -191,7 +191,7 @@ def test_heartbeats_go_on_while_the_operator_of_a_bench_in_another_process_think
             break
     assert code == (0 if ending == "answer" else 130), operator.seen
     assert result["safe_state"] == "confirmed"
-    assert result["end_steps"].startswith("carried out: ramp_down")
+    assert result["end_steps"].startswith("executed: ramp_down")
 
 
 @pytest.mark.slow

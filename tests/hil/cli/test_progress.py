@@ -1,4 +1,4 @@
-"""On a terminal somebody is waiting, and is told for what."""
+"""On a terminal somebody is waiting, and is reported for what."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import sys
 
 import pytest
 
-from hil.cli._output import time_left
+from hil.cli.output import time_left
 
 _WAITS = """
 import logging, time
-from hil.cli._output import progress
+from hil.cli.output import progress
 logging.getLogger("hil").setLevel(logging.DEBUG)
 with progress("plan"):
-    logging.getLogger("hil.core.compiled").info("compiling %s.%s", "module", "function")
+    logging.getLogger("hil.core.runtime.compiled").info("compiling %s.%s", "module", "function")
     time.sleep(0.3)
 """
 
@@ -34,7 +34,7 @@ def test_a_terminal_is_told_that_the_simulation_is_being_compiled() -> None:
     while True:
         try:
             piece = os.read(terminal, 4096)
-        except OSError:  # Linux says so when nobody is at the other end any more
+        except OSError:  # Linux says so when no one is at the other end any more
             break
         if not piece:
             break

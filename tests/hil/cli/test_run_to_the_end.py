@@ -81,7 +81,7 @@ def test_a_plan_without_criteria_is_not_green(tmp_path: Path) -> None:
     done = hil("run", plan_in(tmp_path, text), "--out", tmp_path / "out")
     assert "DONE, 1 segment recorded, 5 of 5 device checks passed" in done.stdout
     page = (tmp_path / "out" / "report.html").read_text()
-    assert "Carried out, nothing judged" in page
+    assert "Executed, nothing judged" in page
     assert 'class="banner pass"' not in page
 
 

@@ -12,7 +12,7 @@ from hil.analysis.control_design import DesignSpec
 from hil.analysis.identification import ORDERS
 from hil.cli import commands
 from hil.cli._app import guarded
-from hil.cli._commands import GROUPS, RENAMED, TOPICS, command_names, command_of
+from hil.cli._commands import GROUPS, RENAMED, TOPICS, command_names, options_of
 from hil.core.channels import INPUT
 from tests.hil.cli.test_commands import hil
 
@@ -81,9 +81,9 @@ def test_an_earlier_name_works_and_tells_the_new_one(earlier, name, capsys):
 @pytest.mark.parametrize("name", command_names())
 def test_the_work_takes_the_options_of_its_command(name):
     work = inspect.signature(
-        importlib.import_module(f"hil.cli.{name.replace('-', '_').replace(' ', '_')}").carry_out
+        importlib.import_module(f"hil.cli.commands.{name.replace('-', '_').replace(' ', '_')}").execute
     )
-    assert [one.annotation for one in work.parameters.values()] == [command_of(name).__name__]
+    assert [one.annotation for one in work.parameters.values()] == [options_of(name).__name__]
 
 
 @pytest.mark.parametrize("name", command_names())
@@ -98,7 +98,7 @@ def test_help_of_a_run_imports_nothing_slow():
 
 def test_options_say_the_defaults_that_the_work_would_take():
     def defaults(name):
-        options = inspect.signature(command_of(name)).parameters
+        options = inspect.signature(options_of(name)).parameters
         return {key: option.default for key, option in options.items()}
 
     paper, given = DesignSpec(), defaults("design")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from hil.cli._streams import TolerantOutput
+from hil.cli.streams import TolerantOutput
 
 HIL = Path(sys.executable).parent / "hil"
 
@@ -48,15 +48,15 @@ def test_ascii_output_is_readable_and_json_stays_json() -> None:
     done = shell("HIL schema plan", PYTHONIOENCODING="ascii")
     assert done.returncode == 0
     assert json.loads(done.stdout) == json.loads(shell("HIL schema plan", PYTHONIOENCODING="utf-8").stdout)
-    program = "from hil.cli._streams import tolerate_outputs as t; t(); print('≤ 5 (rad/s)² ‹試›')"
+    program = "from hil.cli.streams import tolerate_outputs as t; t(); print('≤ 5 (rad/s)² ‹試›')"
     text = shell(f'{sys.executable} -c "{program}"', PYTHONIOENCODING="ascii")
     assert text.stdout == b"<= 5 (rad/s)^2 <\\u8a66>\n", text.stderr
 
 
 def test_a_file_opened_with_a_closed_stdout_does_not_become_it(tmp_path: Path) -> None:
     program = (
-        "from hil.cli._streams import tolerate_outputs; tolerate_outputs(); "
-        f"f = open({str(tmp_path / 'f')!r}, 'w'); print('to nobody'); f.write('content')"
+        "from hil.cli.streams import tolerate_outputs; tolerate_outputs(); "
+        f"f = open({str(tmp_path / 'f')!r}, 'w'); print('to no one'); f.write('content')"
     )
     assert shell(f'{sys.executable} -c "{program}" >&-').returncode == 0
     assert (tmp_path / "f").read_text() == "content"

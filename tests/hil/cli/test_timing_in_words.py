@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from hil.cli._timing import times_in_words, timing_in_words
+from hil.cli.run_output import times_in_words, timing_in_words
 from hil.core.result import Lateness, PeriodicRequests, Timing
 
 
@@ -38,7 +38,7 @@ def test_why_nothing_was_seen_on_the_bus_is_said(unseen: int, said: str) -> None
     )
     (line,) = timing_in_words(Timing(clock="wall", requests=(request,)))
     assert f"on the bus not known ({said})" in line
-    assert line.endswith("; 0 cycles missed"), "nobody's doing"
+    assert line.endswith("; 0 cycles missed"), "no one's doing"
 
 
 def test_virtual_time_needs_none() -> None:

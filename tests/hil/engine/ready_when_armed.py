@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from hil.core import compiled
+from hil.core.runtime import compiled
 from hil.engine import RunRequest, load_bench, run_plan
 from hil.engine.bench.bench import Bench
 from hil.engine.bench.request_timing import RequestTiming
@@ -27,7 +27,7 @@ def _start_heartbeats(self: Bench, timing: RequestTiming | None = None) -> None:
 
 
 def _load_overload(self: Any, sig: Any, target_context: Any) -> Any:
-    if _watched and not _watched[0].loop.shielded:  # after the run criteria are judged: nobody waits for that
+    if _watched and not _watched[0].loop.shielded:  # after the run criteria are judged: no one waits for that
         print(f"{self._source[0]}.{self._function}{sig}")
     return _LOADED(self, sig, target_context)
 

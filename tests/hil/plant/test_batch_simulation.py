@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hil.core import thread_map
 from hil.core.model import EffectUse
+from hil.core.runtime import thread_map
 from hil.plant import (
     SENSOR_DELAY,
     SENSOR_GAIN,

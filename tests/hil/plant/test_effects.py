@@ -211,13 +211,13 @@ def test_a_rotor_thrown_at_a_flank_comes_back_as_restitution_says(kernel):
 @pytest.mark.parametrize("speed", [-3.0, 3.0])
 def test_friction_of_an_axle_that_begins_in_motion_has_turned_around(bristles, speed):
     """As Coulomb's law, which has no bristles to bend first, slows it in the first samples."""
-    begun = Start(speed, speed / THREE.parameters["gear_ratio"], 0.0)
-    start = np.array([[begun.motor_speed_rad_s, begun.wheel_speed_rad_s, begun.shaft_torque_nm]])
+    started = Start(speed, speed / THREE.parameters["gear_ratio"], 0.0)
+    start = np.array([[started.motor_speed_rad_s, started.wheel_speed_rad_s, started.shaft_torque_nm]])
     at_once = {name: value for name, value in bristles.items() if "bristle" not in name} | {"turn_rad": 0.0}
     slowed = []
     for values in (bristles, at_once):
         model = with_effect("coulomb_friction", **values)
-        alone = simulate(model, np.zeros(8), DT, begun)["motor_speed_rad_s"]
+        alone = simulate(model, np.zeros(8), DT, started)["motor_speed_rad_s"]
         beside = simulate_many(pack(model)[None], np.zeros(8), DT, start, ideal_sensors(1))[0, :, 0]
         np.testing.assert_allclose(beside, alone, atol=1e-3 * abs(speed))
         slowed.append(abs(speed) - abs(alone[-1]))

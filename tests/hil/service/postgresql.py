@@ -1,4 +1,4 @@
-"""A PostgreSQL server of our own in a temporary folder: Debian's, begun and ended by the tests."""
+"""A PostgreSQL server of our own in a temporary folder: Debian's, started and ended by the tests."""
 
 from __future__ import annotations
 

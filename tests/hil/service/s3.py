@@ -27,7 +27,7 @@ BUCKET = "recordings"
 
 
 class S3:
-    """A server that is begun and ended; what it was given stays."""
+    """A server that is started and ended; what it was given stays."""
 
     def __init__(self, jars: Path, folder: Path) -> None:
         self._jars, self.folder = jars, folder

@@ -97,7 +97,7 @@ class Served:
 
 
 def environment_of(data: Path) -> dict[str, str]:
-    """That of commands for a service; each service keeps its database when it is begun anew."""
+    """That of commands for a service; each service keeps its database when it is started again."""
     if data not in _databases:
         _databases[data] = new_database()
     return {**os.environ, "HIL_DATABASE": _databases[data]}

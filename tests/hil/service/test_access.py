@@ -12,7 +12,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from hil.messages.api import LADDER, ROLES
+from hil.api_schemas.api import LADDER, ROLES
 from hil.service.api import openapi_text
 from tests.hil.service.served import HIL, SHORT, RefusedError, Served, environment_of, served
 
@@ -127,9 +127,9 @@ def test_each_role_may_what_the_table_says(
     for role in ("", *ROLES):
         status = _status(service, method, path.format(**_NONE), secrets.get(role, ""))
         if least == "" or _may(role, least):
-            assert status not in (401, 403), role or "nobody"
+            assert status not in (401, 403), role or "no one"
         else:
-            assert status == (403 if role else 401), role or "nobody"
+            assert status == (403 if role else 401), role or "no one"
 
 
 def test_a_hazardous_plan_waits_for_a_second_person(tokens: tuple[Served, dict[str, str]]) -> None:

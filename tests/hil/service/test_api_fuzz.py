@@ -1,4 +1,4 @@
-"""Calls that nobody thought of, made from the OpenAPI document: no 5xx, no hang, nothing but what it says."""
+"""Calls that no one thought of, made from the OpenAPI document: no 5xx, no hang, nothing but what it says."""
 
 from __future__ import annotations
 

@@ -15,11 +15,11 @@ from typing import Any
 import pytest
 from sqlalchemy import Engine, text
 
+from hil.api_schemas.campaign import CampaignWanted
+from hil.api_schemas.study import IdentificationWanted
 from hil.client import Client
 from hil.client import RefusedError as AnswerError
 from hil.core.errors import BadInputError
-from hil.messages.campaign import CampaignWanted
-from hil.messages.study import IdentificationWanted
 from hil.service.archive import Archive, ArchiveAwayError, Keeper
 from hil.service.serving import ServeRequest, serve
 from hil.service.store import BenchStore, FileStore, NewRun, RunStore, open_database

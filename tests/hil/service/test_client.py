@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
+from hil.api_schemas.api import RunWanted
 from hil.client import Client, RefusedError
 from hil.core.errors import BenchError
 from hil.core.recording import read_recording
-from hil.messages.api import RunWanted
 from test_plans import library_controllers
 from tests.hil.service.served import HIL, SHORT, Served
 
@@ -114,7 +114,7 @@ def test_ctrl_c_here_ends_the_run_there(service: Served, tmp_path: Path) -> None
         assert process.poll() is None
         time.sleep(0.2)
     run = service.get("/runs")[0]["id"]
-    service.until(run, lambda found: found["told"] != "")
+    service.until(run, lambda found: found["message"] != "")
     process.send_signal(signal.SIGINT)
     said = process.communicate(timeout=60)[1]
     assert (process.returncode, "stopped by the operator" in said) == (130, True)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 
 from hil.analysis.control_design import DesignSpec, design
+from hil.api_schemas.api import RunWanted
+from hil.api_schemas.design import DraftWanted, PlanCopyWanted
 from hil.client import Client, RefusedError
 from hil.core.controller import controller_from_toml
 from hil.core.model import load_model
 from hil.core.recording import read_recording
 from hil.engine.bench.bench_file import shipped
-from hil.messages.api import RunWanted
-from hil.messages.design import DraftWanted, PlanCopyWanted
 from tests.hil.service.served import SHORT, Served
 from tests.hil.service.served import RefusedError as AnswerError
 

@@ -1,4 +1,4 @@
-"""A campaign begun on the page, watched, cancelled, gone on with, and its files."""
+"""A campaign started on the page, watched, cancelled, gone on with, and its files."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ LONG = SHORT.replace("name: short", "name: long").replace(
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[Cluster]:
-    """One that is ended and begun by the tests."""
+    """One that is ended and started by the tests."""
     with cluster() as one:
         yield one
 
@@ -115,7 +115,7 @@ def test_two_services_of_a_database_never_drive_one_bench(server: Cluster, tmp_p
                 one.post(f"/runs/{run}/pause")
             assert refused.value.status == 409
         engine = open_database(url)
-        try:  # a third one that is begun when the first was unheard of for long
+        try:  # a third one that is started when the first was unheard of for long
             server.sql(url, "UPDATE benches SET until = now() - interval '1 s' WHERE bench = 'sim'")
             assert BenchStore(engine, "third", "elsewhere").hold("sim") == ""
         finally:

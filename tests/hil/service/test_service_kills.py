@@ -1,4 +1,4 @@
-"""The service killed at random moments of a queue of runs: nothing is lost, nothing is begun twice."""
+"""The service killed at random moments of a queue of runs: nothing is lost, nothing is started twice."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ def test_a_queue_survives_a_kill_at_any_moment(tmp_path: Path, moment: int) -> N
         time.sleep(after_s)
         service.process.kill()
         service.process.wait(10)
-        begun = sorted(path.name for path in (data / "runs").iterdir()) if (data / "runs").is_dir() else []
+        started = sorted(path.name for path in (data / "runs").iterdir()) if (data / "runs").is_dir() else []
     with served(data, state=state) as service:
         ended = [service.over(run) for run in runs]
         assert [run["id"] for run in ended] == runs
         assert len(service.get("/runs")) == _RUNS
         assert {run["state"] for run in ended} <= {"ended", "interrupted"}
         cut = [run for run in ended if run["state"] == "interrupted"]
-        assert len(cut) <= 1, "one bench carries out one run"
-        assert all(f"{run['id']:06d}" in begun or not run["files"] for run in cut)
+        assert len(cut) <= 1, "one bench executes one run"
+        assert all(f"{run['id']:06d}" in started or not run["files"] for run in cut)
         for run in ended:
             _look_at(service, data, run["id"], run["state"])
 

@@ -96,7 +96,7 @@ def test_only_its_holders_runs_come_while_a_bench_is_leased(engine: Engine) -> N
     assert runs.next_of("sim", "anna") is not None
     assert leases.take("sim", "bert", 60.0).holder == "bert"
     assert leases.take("sim", "anna", 60.0) is None
-    assert leases.take("sim", "bert", -1.5) is not None  # its time is over: nobody has it
+    assert leases.take("sim", "bert", -1.5) is not None  # its time is over: no one has it
     assert leases.of("sim") is None
     assert leases.take("sim", "anna", 60.0) is not None
     leases.give_back("sim")

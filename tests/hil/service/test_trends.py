@@ -1,4 +1,4 @@
-"""Trends: scatter from neighbours, distance to the nearer limit, and only what can be said."""
+"""Trends: scatter from neighbours, distance to the nearer limit, and only what can be stated."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hil.api_schemas.api import RunState, TrendPoint
 from hil.core.result import CriterionResult, RunResult
-from hil.messages.api import RunState, TrendPoint
 from hil.service.store import BenchStore, NewRun, RunStore, open_database
 from hil.service.trends import LEAST_POINTS, trends
 

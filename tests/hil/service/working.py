@@ -43,14 +43,14 @@ def working(
     url: str, data: Path, *benches: Path, state: Path, token: str = "", arguments: tuple[str, ...] = ()
 ) -> Iterator[Working]:
     """Start it and end it; it may be killed meanwhile."""
-    process = begun(url, data, *benches, state=state, token=token, arguments=arguments)
+    process = started(url, data, *benches, state=state, token=token, arguments=arguments)
     try:
         yield Working(process, told_by(process), data)
     finally:
         ended(process)
 
 
-def begun(
+def started(
     url: str, data: Path, *benches: Path, state: Path, token: str = "", arguments: tuple[str, ...] = ()
 ) -> subprocess.Popen[str]:
     """The process, whatever it says."""

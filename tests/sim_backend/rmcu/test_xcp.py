@@ -7,8 +7,8 @@ import struct
 import numpy as np
 import pytest
 
-from hil.core.symbols import Symbol
-from hil.core.xcp import Code, Command, connected
+from hil.core.can.symbols import Symbol
+from hil.core.can.xcp import Code, Command, connected
 from hil.plant.closed_loop import tick as T
 from sim_backend.rmcu import RamSettings, RmcuMemory, XcpSlave
 

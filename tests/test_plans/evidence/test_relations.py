@@ -148,3 +148,19 @@ def test_a_shaft_that_twists_near_standstill_is_no_contradiction() -> None:
     }
     short = SEGMENT.model_copy(update={"end_s": STEP.step_s + 1.0, "load": "speed"})
     assert objections(axle(**slow), short) == {}
+
+
+SLIDING = 4.0 * DRIVEN  # by which the left wheel leads the mean, rad/s
+
+
+def test_wheels_that_slide_apart_behind_a_differential_contradict_nothing() -> None:
+    wheel = 2.0 + np.cumsum(DRIVEN) * 1.07e-3
+    sliding = axle(wheel_speed_left_rad_s=wheel + SLIDING, wheel_speed_right_rad_s=wheel - SLIDING)
+    assert objections(sliding, SEGMENT) == {}
+
+
+@pytest.mark.parametrize("gear_ratio", [GEAR, None])
+def test_half_a_sensor_is_no_wheel_that_slides(gear_ratio: float | None) -> None:
+    half = axle(wheel_speed_left_rad_s=0.5 * SOUND["wheel_speed_left_rad_s"])
+    segment = SEGMENT.model_copy(update={"gear_ratio": gear_ratio})
+    assert "wheel_speed_left_rad_s" in objections(half, segment)

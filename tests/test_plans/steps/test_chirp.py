@@ -20,7 +20,7 @@ CHIRP = {
 def test_every_sweep_is_a_segment() -> None:
     conductor = NoteTaker()
     chirp = step_of("chirp", **CHIRP, repeats=2)
-    chirp.carry_out(conductor)
+    chirp.execute(conductor)
     assert conductor.calls == [
         ("release_vehicle",),
         ("play", "motor_torque", "sweep_1"),

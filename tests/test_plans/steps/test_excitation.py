@@ -54,7 +54,7 @@ EXCITATIONS = st.one_of(
 @given(EXCITATIONS)
 def test_what_is_played_is_what_was_planned(step: Step) -> None:
     conductor = NoteTaker()
-    step.carry_out(conductor)
+    step.execute(conductor)
     segments = tuple(segment for _, _, segment in conductor.played)
     assert segments == step.segments()
     played_s = 0.0

@@ -10,7 +10,7 @@ from tests.test_plans.writing import step_of
 
 def test_speed_goes_to_the_conductor_in_si_units() -> None:
     conductor = NoteTaker()
-    step_of("hold_speed", speed_km_h=36, duration_s=2).carry_out(conductor)
+    step_of("hold_speed", speed_km_h=36, duration_s=2).execute(conductor)
     assert conductor.calls == [("hold_speed", pytest.approx(10.0), 2.0)]
 
 

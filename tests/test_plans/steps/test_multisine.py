@@ -23,7 +23,7 @@ MULTISINE = {
 def test_realisations_have_other_phases_and_segments_of_their_own() -> None:
     conductor = NoteTaker()
     multisine = step_of("multisine", **MULTISINE, realisations=2, odd_only=True)
-    multisine.carry_out(conductor)
+    multisine.execute(conductor)
     (_, one, first), (_, two, second) = conductor.played
     assert first is not None
     assert second is not None
@@ -39,8 +39,8 @@ def test_realisations_have_other_phases_and_segments_of_their_own() -> None:
 
 def test_the_second_realisation_is_the_first_of_the_next_seed() -> None:
     conductor = NoteTaker()
-    step_of("multisine", **MULTISINE, realisations=2).carry_out(conductor)
-    step_of("multisine", **MULTISINE | {"seed": 4}).carry_out(conductor)
+    step_of("multisine", **MULTISINE, realisations=2).execute(conductor)
+    step_of("multisine", **MULTISINE | {"seed": 4}).execute(conductor)
     np.testing.assert_array_equal(conductor.played[1][1], conductor.played[2][1])
 
 

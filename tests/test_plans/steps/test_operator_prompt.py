@@ -10,7 +10,7 @@ from tests.test_plans.writing import step_of
 def test_the_text_is_shown() -> None:
     conductor = NoteTaker()
     step = step_of("operator_prompt", text="Close the door")
-    step.carry_out(conductor)
+    step.execute(conductor)
     assert conductor.calls == [("prompt", "Close the door")]
     assert step.duration_s == 0.0
 

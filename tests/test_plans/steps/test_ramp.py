@@ -13,7 +13,7 @@ RAMP = {"quantity": "motor_torque", "from_nm": 0, "to_nm": 40, "duration_s": 2}
 def test_a_ramp_between_two_levels() -> None:
     conductor = NoteTaker()
     ramp = step_of("ramp", **RAMP, segment="slope", before_s=1, after_s=3)
-    ramp.carry_out(conductor)
+    ramp.execute(conductor)
     _, samples, segment = conductor.played[0]
     assert_allclose(samples[[0, 999, 2000, 3000, -1]], [0, 0, 20, 40, 40])
     assert segment is not None
@@ -25,7 +25,7 @@ def test_a_ramp_between_two_levels() -> None:
 def test_without_a_name_there_is_no_segment() -> None:
     conductor = NoteTaker()
     ramp = step_of("ramp", **RAMP)
-    ramp.carry_out(conductor)
+    ramp.execute(conductor)
     assert ramp.segments() == ()
     assert ramp.numbered(3) == ramp
     assert conductor.calls[-1] == ("play", "motor_torque", None)

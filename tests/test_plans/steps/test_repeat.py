@@ -13,7 +13,7 @@ def test_segments_are_numbered_by_pass_from_outside_in() -> None:
     repeat = step_of("repeat", times=2, steps=[inner, {"wait": {"duration_s": 1}}])
     assert [segment.id for segment in repeat.segments()] == ["up_1_1", "up_1_2", "up_2_1", "up_2_2"]
     conductor = NoteTaker()
-    repeat.carry_out(conductor)
+    repeat.execute(conductor)
     assert [segment.id for _, _, segment in conductor.played if segment] == [
         segment.id for segment in repeat.segments()
     ]

@@ -11,7 +11,7 @@ from tests.test_plans.writing import step_of
 def test_the_file_that_was_found_goes_to_the_conductor() -> None:
     conductor = NoteTaker()
     step = step_of("set_controller", file="gain_stabilization.toml")
-    step.carry_out(conductor)
+    step.execute(conductor)
     assert conductor.calls == [("set_controller", LIBRARY / "controllers" / "gain_stabilization.toml")]
     assert step.duration_s == 0.0
 

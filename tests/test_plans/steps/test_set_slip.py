@@ -11,7 +11,7 @@ from tests.test_plans.writing import step_of
 def test_slip_goes_to_the_conductor_as_a_share() -> None:
     conductor = NoteTaker()
     step = step_of("set_slip", slip_percent=5)
-    step.carry_out(conductor)
+    step.execute(conductor)
     assert conductor.calls == [("set_slip", pytest.approx(0.05))]
     assert step.outlook(4.0, Pace()) == Outlook(0.0, 4.0)
 

@@ -10,7 +10,7 @@ from tests.test_plans.writing import step_of
 
 def test_what_is_given_goes_to_the_conductor_and_the_rest_stays() -> None:
     conductor = NoteTaker()
-    step_of("set_vehicle", mass_kg=1500, slip_percent=5).carry_out(conductor)
+    step_of("set_vehicle", mass_kg=1500, slip_percent=5).execute(conductor)
     assert conductor.calls == [("set_vehicle", VehicleAndRoad(mass_kg=1500, slip=0.05))]
 
 

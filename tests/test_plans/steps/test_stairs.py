@@ -11,7 +11,7 @@ from tests.test_plans.writing import step_of
 def test_metrics_of_stairs_look_at_the_last_step() -> None:
     conductor = NoteTaker()
     stairs = step_of("stairs", segment="up", quantity="driving_torque", levels_nm=[0, 50, 200], hold_s=4)
-    stairs.carry_out(conductor)
+    stairs.execute(conductor)
     _, samples, segment = conductor.played[0]
     assert_array_equal(samples[[0, 3999, 4000, 7999, 8000, 11999]], [0, 0, 50, 50, 200, 200])
     assert segment is not None

@@ -13,7 +13,7 @@ from tests.test_plans.writing import STEP, step_of
 def test_a_step_releases_the_vehicle_and_plays_one_segment() -> None:
     conductor = NoteTaker()
     step = step_of("step", **STEP)
-    step.carry_out(conductor)
+    step.execute(conductor)
     assert conductor.calls == [("release_vehicle",), ("play", "driving_torque", "up")]
     _, samples, segment = conductor.played[0]
     assert_array_equal(samples, np.repeat([0.0, 326.0], [1000, 20_000]))
@@ -24,7 +24,7 @@ def test_a_step_releases_the_vehicle_and_plays_one_segment() -> None:
 
 def test_load_speed_keeps_the_dynos_holding() -> None:
     conductor = NoteTaker()
-    step_of("step", **STEP, load="speed").carry_out(conductor)
+    step_of("step", **STEP, load="speed").execute(conductor)
     assert conductor.calls == [("play", "driving_torque", "up")]
 
 

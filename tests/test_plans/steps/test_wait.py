@@ -11,7 +11,7 @@ from tests.test_plans.writing import step_of
 def test_carried_out_for_its_duration() -> None:
     conductor = NoteTaker()
     step = step_of("wait", duration_s=2.5)
-    step.carry_out(conductor)
+    step.execute(conductor)
     assert conductor.calls == [("wait", 2.5)]
     assert step.duration_s == 2.5
     assert step.outlook(7.0, Pace()).speed_m_s == 7.0

@@ -8,8 +8,8 @@ import numpy as np
 
 from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
+from hil.core.files.toml_file import parse_toml
 from hil.core.recording import Recording
-from hil.core.toml_file import parse_toml
 
 _BENCH_FILE, _TABLE = "bench.toml", "noise"
 

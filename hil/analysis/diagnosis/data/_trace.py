@@ -25,8 +25,8 @@ from hil.analysis.diagnosis.data._thresholds import (
 )
 from hil.core.channels import CHANNELS, INPUT, OUTPUTS, TIME, WHEEL_ANGLE
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import closest
 from hil.core.recording import Recording
-from hil.core.suggestion import closest
 from hil.plant import SENSOR_GAIN, SENSOR_OFFSET
 
 Array = npt.NDArray[np.float64]

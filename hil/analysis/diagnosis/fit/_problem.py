@@ -29,7 +29,7 @@ from hil.analysis.diagnosis.fit._thresholds import (
     STEP,
 )
 from hil.core.model import TransferFunction
-from hil.core.thread_map import map_on_threads
+from hil.core.runtime.thread_map import map_on_threads
 from hil.plant import simulate_many
 
 Array = npt.NDArray[np.float64]

@@ -104,7 +104,7 @@ def _falling(problem: Problem, one: Fit) -> Fit:
 
 def chosen(scores: list[Score]) -> list[Score]:
     top = [s for s in scores[:RACE] if s.gain > max(LEAST_EVIDENCE, PROMISING * scores[0].gain)]
-    wanted = {name for s in top[:2] for name in EFFECTS[s.key[0]].kin}
+    wanted = {name for s in top[:2] for name in EFFECTS[s.key[0]].similar}
     have = {s.key[0] for s in top}
     return top + [
         s for s in scores if s.key[0] in wanted - have and s.gain > RELATIVE_PROMISES * scores[0].gain

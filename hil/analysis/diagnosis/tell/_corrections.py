@@ -15,8 +15,8 @@ from hil.analysis.diagnosis.fit._thresholds import TOLERANCE
 from hil.analysis.diagnosis.search._from_base import moved
 from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.tell._result import NamedEffect, Start
-from hil.core.digits import multiple
 from hil.core.effects import EFFECTS
+from hil.core.errors.digits import multiple
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]

@@ -9,12 +9,12 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from drivers import BusLoop, Connections, Device, Examinable, Finding, Wire
+from hil.core.can.frames import FrameBlock
 from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError, BenchError
-from hil.core.frames import FrameBlock
 from hil.core.model import load_model
-from hil.core.real_time import undisturbed
-from hil.core.versions import versions
+from hil.core.runtime.real_time import undisturbed
+from hil.core.runtime.versions import versions
 from hil.engine.bench.bench import bench_clock, connections_of, open_wire
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.bus_tally import Tally, known_identifiers
@@ -38,7 +38,7 @@ class DoctorRequest:
 
     Attributes:
         listen_s: seconds of the bench clock to listen before anybody is asked.
-        progress: told the share that is done and what is going on.
+        progress: called with the share that is done and what is going on.
     """
 
     bench: BenchFile
@@ -126,7 +126,7 @@ class _Visit:
             self._found.devices[key] = DeviceFacts(table.kind, answers=False)
             bus = getattr(table, "bus", None)
             if isinstance(bus, str) and bus not in connections.wires:
-                continue  # told with the bus
+                continue  # reported with the bus
             try:
                 devices[key] = table.open(key.removeprefix("devices."), connections)
                 self._opened.callback(devices[key].close)
@@ -148,7 +148,7 @@ class _Visit:
     def _listen(self, loop: BusLoop, listener: Listener) -> float:
         """Let time pass, seconds of the bench clock.
 
-        A bus that fails is told once and does not keep the others from being heard.
+        A bus that fails is reported once and does not keep the others from being heard.
         """
         loop.on_drained(listener.take)
         loop.on_block(self._count)

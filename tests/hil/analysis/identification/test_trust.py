@@ -1,4 +1,4 @@
-"""What a linear model of nonlinear, unrelated or wrongly wired data is worth, and that it is said."""
+"""What a linear model of nonlinear, unrelated or wrongly wired data is worth, and that it is stated."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ class Hills:
 
 
 def climbed(hills, start, rounds=40):
-    Ascent(hills, sorted(hills._margins), ["room"]).carry_out(np.array(start), 0.2, 1e-4, rounds)
+    Ascent(hills, sorted(hills._margins), ["room"]).execute(np.array(start), 0.2, 1e-4, rounds)
     return hills.best
 
 

@@ -32,7 +32,7 @@ class ComputedBench:
         self.runs.append(controller)
         if number in self._fails:
             return Measured(trouble="a limit tripped")
-        return Measured(self._trial.judged(self._trial.carry_out(self._model, controller, 0.0, 0)))
+        return Measured(self._trial.judged(self._trial.execute(self._model, controller, 0.0, 0)))
 
 
 @pytest.fixture(scope="module")

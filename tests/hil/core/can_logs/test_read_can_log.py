@@ -1,4 +1,4 @@
-"""Logs as others write them: every frame, its stamp and its kind; what is broken is said."""
+"""Logs as others write them: every frame, its stamp and its kind; what is broken is stated."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from asammdf import MDF, Signal, Source
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST
 from hil.core.can_logs import READ, read_can_log
 from hil.core.errors import BadInputError
-from hil.core.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST
 
 BEGAN_S = 1_772_612_100.25
 WRITERS = {

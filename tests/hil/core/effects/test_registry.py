@@ -44,6 +44,8 @@ CONTRACT = {
     "wheel_order_disturbance": ("order", "amplitude_nm", "phase_rad"),
     "motor_order_ripple": ("order", "amplitude_nm", "phase_rad"),
     "tyre_slip": ("slip_stiffness_nm", "relaxation_length_m"),
+    "tyre_friction": ("peak_nm", "sliding_nm", "fades_at_rad_s", "patch_friction", "patch_length_m"),
+    "separate_wheels": ("differential_friction_nm", "friction_left", "friction_right"),
     "dyno_lag": ("time_constant_s",),
     "running_resistance": ("rolling_nm", "aero_nms2_rad2"),
     "sensor_gain": ("gain",),
@@ -77,7 +79,7 @@ def test_they_stand_in_the_order_in_which_they_act():
 
 @every
 def test_kin_are_effects(effect: Effect):
-    assert set(effect.kin) <= set(EFFECTS) - {effect.id}
+    assert set(effect.similar) <= set(EFFECTS) - {effect.id}
 
 
 @every

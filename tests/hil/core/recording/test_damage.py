@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 
+from hil.core.can.frames import FRAME
 from hil.core.errors import BadInputError
-from hil.core.frames import FRAME
 from hil.core.recording import Recording, RecordingWriter, driven_by_torque, read_frames, read_recording
 from hil.core.result import RunResult, Segment
 

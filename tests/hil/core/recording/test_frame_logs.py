@@ -15,8 +15,8 @@ import pytest
 from asammdf import MDF
 from can.io import mf4
 
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, frames, joined
 from hil.core.errors import BadInputError
-from hil.core.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, frames, joined
 from hil.core.recording import DEVICE, RecordingWriter, read_recording, write_frames
 from tests.benches_for_tests import SIM
 

@@ -18,7 +18,7 @@ import pytest
 from mcap.records import Message
 from mcap.stream_reader import StreamReader
 
-from hil.core.frames import FRAME
+from hil.core.can.frames import FRAME
 from hil.core.recording import RecordingWriter, read_frames, read_recording
 from hil.core.recording._growing_file import GrowingFile
 
@@ -133,7 +133,7 @@ def test_a_disk_that_takes_nothing_for_long_ends_the_recording(taking_nothing, m
     with pytest.raises(OSError, match="taken nothing for"):
         file.write(b"more")
     drained(reading, 200_000)
-    file.close()  # it has been told
+    file.close()  # it has been reported
 
 
 def test_what_a_thread_could_not_write_is_told_once_at_the_next_write_or_at_the_end(tmp_path: Path) -> None:

@@ -12,8 +12,8 @@ from mcap.reader import make_reader
 from mcap.records import Message
 from mcap.stream_reader import StreamReader
 
+from hil.core.can.frames import FRAME
 from hil.core.errors import BadInputError, BenchError
-from hil.core.frames import FRAME
 from hil.core.recording import RecordingWriter, read_frames, read_recording
 
 NAMES = ["time_s", "motor_torque_ref_nm", "motor_speed_rad_s", *[f"extra_{i}" for i in range(20)]]

@@ -1,4 +1,4 @@
-"""Cut anywhere, any bit flipped: what is recovered was written so, and what was lost is said."""
+"""Cut anywhere, any bit flipped: what is recovered was written so, and what was lost is stated."""
 
 from __future__ import annotations
 

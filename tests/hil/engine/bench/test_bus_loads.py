@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hil.core.frames import FRAME
+from hil.core.can.frames import FRAME
 from hil.engine import RunRequest, run_plan
 from hil.engine.bench.bus_loads import BusLoads
 from hil.engine.prediction.forecast import forecast

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST
 from hil.engine.bench.bus_tally import Tally, known_identifiers
 from tests.benches_for_tests import SIM
 

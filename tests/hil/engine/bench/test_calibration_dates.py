@@ -1,4 +1,4 @@
-"""A calibration that has run out is refused, or answered for by name and reason, which is told everywhere."""
+"""A calibration that has run out is refused, or answered for by name and reason, which all outputs show."""
 
 from __future__ import annotations
 

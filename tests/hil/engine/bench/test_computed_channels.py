@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from drivers import BusLoop, Samples, Stream, bits_on_the_wire
+from hil.core.can.frames import ERROR_FRAME, FRAME
 from hil.core.errors import BadInputError, BenchError
-from hil.core.frames import ERROR_FRAME, FRAME
 from hil.core.model import EffectUse, load_model, save_model
 from hil.core.recording import read_recording
 from hil.engine import BenchFile, RunRequest, run_plan

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from drivers import Binding, FrameSource
+from hil.core.can.frames import FRAME
+from hil.core.can.signals import Signal
 from hil.core.errors import BenchError
-from hil.core.frames import FRAME
 from hil.core.recording import read_recording
-from hil.core.signals import Signal
 from hil.engine import RunRequest, run_plan
 from hil.engine.run.limits import LimitWatch
 from tests.benches_for_tests import SIM, plan, sim_bench

@@ -10,7 +10,7 @@ import pytest
 from pydantic import BaseModel, ValidationError
 
 from drivers import DynoTable, RmcuTable
-from hil.core.table_mistakes import mistakes_of
+from hil.core.errors.table_mistakes import mistakes_of
 from hil.engine.bench.device_kinds import KINDS, descriptions_of, device_tables
 from tests.benches_for_tests import SIM
 
@@ -85,7 +85,7 @@ def test_pydantics_errors_become_key_value_and_what_would_be_right() -> None:
     mistakes = mistakes_of(caught.value, Outer, "frame")
     assert mistakes[0].startswith("frame.rod.length_m = 'long': must be a number")
     assert mistakes[1:] == ["frame.rod.mass: unknown key", "frame.tube.length_m: is missing"]
-    # of a table that was told of before, nothing is told again
+    # of a table that was told of before, nothing is reported again
     assert (
         mistakes_of(caught.value, Outer, "", ["rod.length_m = 'long': no"])[-1] == "tube.length_m: is missing"
     )

@@ -9,7 +9,7 @@ import pytest
 
 from hil.core.errors import BadInputError
 from hil.engine.bench.found_bench import folders_of, found_bench, refuse_hardware
-from tests.hil.core.test_schemas import BENCHES
+from tests.hil.core.model.test_schemas import BENCHES
 
 
 def test_the_bench_beside_the_plan_goes_before_the_one_in_the_current_folder(

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hil.core.can.frames import FrameBlock
 from hil.core.conventions import TICK_S
 from hil.core.errors import BenchError
-from hil.core.frames import FrameBlock
 from hil.core.recording import read_recording
 from hil.engine import RunOutcome, RunRequest, run_plan
 from hil.plant.closed_loop import tick as T

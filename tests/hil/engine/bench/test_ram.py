@@ -11,8 +11,8 @@ import pytest
 import tomli_w
 
 from drivers import read_rmcu
+from hil.core.can.frames import FrameBlock
 from hil.core.errors import BadInputError
-from hil.core.frames import FrameBlock
 from hil.core.recording import read_recording
 from hil.engine import RunRequest, load_bench, run_plan
 from hil.engine.bench.bench_file import bench_from_dict, shipped

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from drivers import BusLoop
+from hil.core.can.frames import ERROR_FRAME, frames
 from hil.core.errors import BadInputError, BenchError
-from hil.core.frames import ERROR_FRAME, frames
 from hil.core.model import load_model
 from hil.engine import StopRequest
 from hil.engine.bench.bench import bench_clock, open_wire

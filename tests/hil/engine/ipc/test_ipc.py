@@ -27,7 +27,7 @@ class Look(Step):
 
     kind: ClassVar[str] = "look"
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         conductor.analyse("look", self._work, ("samples.txt",))
 
     def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:

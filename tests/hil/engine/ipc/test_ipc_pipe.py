@@ -1,4 +1,4 @@
-"""Pipes that nobody waits at: a reader that stands still holds up nobody, one that is gone is noticed."""
+"""Pipes that no one waits at: a reader that stands still holds up no one, one that is gone is noticed."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from tests.hil.analysis.tuning.trials import MODEL, PLAN, trial_of
 def test_peak_within_1_percent_and_band_energy_within_3_percent_of_the_wire(tmp_path):
     trial = trial_of()
     tuned = trial.controller({"lead_deg": 20.0, "feed_forward_time_s": 0.06})
-    predicted = {c.id: c.value for c in trial.judged(trial.carry_out(MODEL, tuned, 0.0, 0))}
+    predicted = {c.id: c.value for c in trial.judged(trial.execute(MODEL, tuned, 0.0, 0))}
     file = tmp_path / "tuned.toml"
     save_controller(tuned, file)
     (tmp_path / "short.yaml").write_text(PLAN)
@@ -53,7 +53,7 @@ def test_only_what_is_asked_for_is_recorded_but_a_whole_run_has_everything():
 def test_what_comes_before_the_tuned_controller_is_predicted_once_and_changes_nothing():
     trial = trial_of()
     slow, quick = (trial.controller({"feed_forward_time_s": time_s}) for time_s in (0.15, 0.04))
-    runs, names = trial.carry_out, ("shaft_torque_nm", "motor_speed_rad_s")
+    runs, names = trial.execute, ("shaft_torque_nm", "motor_speed_rad_s")
     kept = [runs(MODEL, controller, 1.0, 7) for controller in (slow, quick, slow)]
     for controller, found in zip((slow, quick, slow), kept, strict=True):
         fresh = BatchPrediction(trial.plan, SIM, trial.driven.file, runs.channels)(MODEL, controller, 1.0, 7)
@@ -75,9 +75,7 @@ def test_of_many_cars_the_one_that_was_tried_longest_ago_is_forgotten(monkeypatc
 def test_steps_of_a_sample_give_the_figures_of_steps_as_short_as_the_wires():
     trial = trial_of()
     tuned = trial.controller({"lead_deg": 20.0})
-    quick, exact = (
-        trial.judged(trial.carry_out(MODEL, tuned, 0.0, 0, whole=whole)) for whole in (False, True)
-    )
+    quick, exact = (trial.judged(trial.execute(MODEL, tuned, 0.0, 0, whole=whole)) for whole in (False, True))
     for one, other in zip(quick, exact, strict=True):
         assert one.value == pytest.approx(other.value, rel=1e-4)
 
@@ -93,4 +91,4 @@ def test_a_tried_controller_may_not_ask_for_more_torque_than_the_bench_allows():
     trial = trial_of()
     strong = trial.controller({"torque_limit_nm": 1.01 * SIM.limits.motor_torque_nm})
     with pytest.raises(BadInputError, match="above the bench's"):
-        trial.carry_out(MODEL, strong, 0.0, 0)
+        trial.execute(MODEL, strong, 0.0, 0)

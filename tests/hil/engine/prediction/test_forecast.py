@@ -202,7 +202,7 @@ class Look(Step):
 
     kind = "look"
 
-    def carry_out(self, conductor):
+    def execute(self, conductor):
         conductor.analyse("look", self._work, ("seen.csv",))
 
     def outlook(self, speed_m_s, pace):

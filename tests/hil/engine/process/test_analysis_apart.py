@@ -27,14 +27,14 @@ class Ponder(Step):
     kind: ClassVar[str] = "ponder"
     for_s: float
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         conductor.analyse("ponder", self._work, ("pid.txt",))
 
     def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:
         return Outlook(0.0, speed_m_s)
 
     def _work(self, recording: Recording, made: Path) -> Mapping[str, bytes]:
-        (made / "begun").write_text(str(os.getpid()))
+        (made / "started").write_text(str(os.getpid()))
         until_s = time.monotonic() + self.for_s
         while time.monotonic() < until_s:
             sum(range(100_000))
@@ -68,7 +68,7 @@ def test_on_hardware_it_is_done_by_another_process_while_heartbeats_go_on(tmp_pa
 def test_what_ends_the_run_ends_it(typed: str, kind: type[Exception], tmp_path: Path) -> None:
     class Impatient(Silent):
         def typed(self) -> list[str | EmergencyAsked]:
-            if not (tmp_path / "begun").exists() or not (tmp_path / "begun").read_text():
+            if not (tmp_path / "started").exists() or not (tmp_path / "started").read_text():
                 return []
             if not typed:
                 request.stop.ask()
@@ -81,14 +81,14 @@ def test_what_ends_the_run_ends_it(typed: str, kind: type[Exception], tmp_path: 
     outcome = run_plan(request)
     assert isinstance(outcome.error, kind)
     assert outcome.result.safe_state == "confirmed"
-    assert is_gone(int((tmp_path / "begun").read_text()))
+    assert is_gone(int((tmp_path / "started").read_text()))
 
 
 @pytest.mark.slow
 def test_the_safe_state_does_not_wait_for_it(tmp_path: Path) -> None:
     with bench_in_real_time("unplugged-pondering") as (bench, unplugged, _):
         request = RunRequest(pondering(3600.0), bench, tmp_path)
-        request.progress = lambda share, text: unplugged.set() if (tmp_path / "begun").exists() else None
+        request.progress = lambda share, text: unplugged.set() if (tmp_path / "started").exists() else None
         outcome = run_plan(request)
     assert type(outcome.error) is BenchError
-    assert is_gone(int((tmp_path / "begun").read_text()))
+    assert is_gone(int((tmp_path / "started").read_text()))

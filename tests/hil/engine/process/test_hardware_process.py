@@ -33,7 +33,7 @@ from hil.engine.ipc.ipc_messages import (
 )
 from hil.engine.ipc.ipc_pipe import IpcPipe
 from hil.engine.process.hardware_process import LAST_WORDS_S
-from hil.engine.process.supervisor import carry_out
+from hil.engine.process.supervisor import execute
 from hil.engine.run.arming import TURNED_S
 from hil.engine.stop.stopping import held_back
 from test_plans import Plan, plan_from_text
@@ -64,7 +64,7 @@ def test_a_run_with_a_prompt_passes_and_its_recording_is_there(tmp_path: Path):
     operator, shown = Answering("yes"), []
     request = RunRequest(asked(), own_process(), tmp_path, terminal=operator, operator="A")
     request.progress = lambda share, text: shown.append(text)
-    outcome = carry_out(request, HOLDER)
+    outcome = execute(request, HOLDER)
     assert (outcome.error, outcome.result.safe_state) == (None, "confirmed")
     recording = read_recording(outcome.recording)
     assert recording.metadata["run"]["operator"] == "A"
@@ -75,7 +75,7 @@ def test_a_run_with_a_prompt_passes_and_its_recording_is_there(tmp_path: Path):
 def test_what_cannot_be_carried_out_is_refused_as_here(tmp_path: Path):
     request = RunRequest(asked().model_copy(update={"text": "name: x\nsteps: []\n"}), own_process(), tmp_path)
     with pytest.raises(BadInputError, match="a plan needs at least one step"):
-        carry_out(request, HOLDER)
+        execute(request, HOLDER)
 
 
 @contextlib.contextmanager
@@ -102,7 +102,7 @@ def held(request: RunRequest) -> Iterator[tuple[subprocess.Popen[bytes], IpcPipe
 
 
 def heard_until(pipe: IpcPipe, kind: type[Message], *, here: bool = True) -> list[Message]:
-    """What is said until something of a kind comes."""
+    """What is stated until something of a kind comes."""
     found: list[Message] = []
     until_s = time.monotonic() + 120
     while not any(isinstance(message, kind) for message in found):
@@ -147,7 +147,7 @@ def test_asked_to_stop_from_either_side_it_ends_safe_once(
     assert isinstance(ended, Ended)
     assert isinstance(ended.error.as_error(), InterruptError)
     assert ended.result.safe_state == "confirmed"
-    assert ended.result.end_steps.startswith("carried out: ramp_down")
+    assert ended.result.end_steps.startswith("executed: ramp_down")
     assert sum(isinstance(message, Concluded) for message in heard) == 1
 
 
@@ -162,7 +162,7 @@ def test_a_command_that_is_gone_or_frozen_ends_the_run_in_the_normal_way(how: st
     result = run_of(read_recording(tmp_path / "recording.mcap"))
     assert result is not None
     assert (result.verdict, result.safe_state) == ("error", "confirmed")
-    assert result.end_steps.startswith("carried out: ramp_down")
+    assert result.end_steps.startswith("executed: ramp_down")
     words = "the command of this run has ended" if how == "gone" else "the command has been silent for"
     assert words in result.reason
     assert b"Traceback" not in said

@@ -1,4 +1,4 @@
-"""Whether a bench is safe that nobody holds any more: by listening alone."""
+"""Whether a bench is safe that no one holds any more: by listening alone."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from hil.core.errors import BadInputError, BenchError, EmergencyStopError, HilEr
 from hil.engine import RunRequest
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.process import supervisor
-from hil.engine.process.supervisor import carry_out
+from hil.engine.process.supervisor import execute
 from tests.benches_for_tests import plan, sim_bench
 from tests.operators import Silent
 
@@ -26,12 +26,12 @@ RESULT = (
 )
 ENDED = f'{{"kind": "ended", "result": {RESULT}, "recording": "r"}}'
 REFUSED = '{"kind": "refused", "error": {"kind": "BadInputError", "what": "not this"}}'
-TOLD = '{"kind": "told", "text": "hello"}'
+TOLD = '{"kind": "message", "text": "hello"}'
 HUNG_AFTER_S = 0.5
 
 
 def watched_bench(name: str = "watched", **changes: Any) -> BenchFile:
-    """A simulated bench that is held by a process of its own: nobody needs to be asked whether it is safe."""
+    """A simulated bench that is held by a process of its own: no one needs to be asked whether it is safe."""
     bench = sim_bench(name, **changes)
     settings = bench.supervision.model_copy(update={"own_process": True, "hung_after_s": HUNG_AFTER_S})
     return bench.model_copy(update={"supervision": settings})
@@ -49,13 +49,13 @@ def request(folder: Path, **keys: Any) -> RunRequest:
 
 def lost(folder: Path, command: list[str], **keys: Any) -> HilError:
     with pytest.raises(HilError) as caught:
-        carry_out(request(folder, **keys), command)
+        execute(request(folder, **keys), command)
     return caught.value
 
 
 def test_what_it_says_is_passed_on(tmp_path: Path):
     told, shown = Silent(), []
-    outcome = carry_out(
+    outcome = execute(
         request(tmp_path, terminal=told, progress=lambda share, text: shown.append((share, text))),
         process(TURNED, TOLD, '{"kind": "progress", "share": 0.5, "text": "half"}', ENDED),
     )
@@ -94,7 +94,7 @@ def test_one_that_does_not_leave_when_all_is_said_is_ended(tmp_path: Path, monke
     monkeypatch.setattr(supervisor, "_LEAVING_S", 1.0)
     number = tmp_path / "pid"
     stays = process(ENDED, then=f"open({str(number)!r}, 'w').write(str(os.getpid()))\ntime.sleep(60)")
-    assert carry_out(request(tmp_path), stays).result.verdict == "pass"
+    assert execute(request(tmp_path), stays).result.verdict == "pass"
     with pytest.raises(ProcessLookupError):
         os.kill(int(number.read_text()), 0)
 
@@ -109,7 +109,7 @@ def test_one_that_stands_still_for_a_moment_is_not_given_up(tmp_path: Path):
         "os.kill(number, signal.SIGSTOP)\n"
         f"print({ENDED!r}, flush=True)\n"
     )
-    assert carry_out(request(tmp_path), process(TOLD, then=stands)).result.verdict == "pass"
+    assert execute(request(tmp_path), process(TOLD, then=stands)).result.verdict == "pass"
 
 
 def test_one_that_is_stopped_before_its_loop_turns_is_not_waited_for(tmp_path: Path):
@@ -122,7 +122,7 @@ def test_one_that_opens_its_bench_is_waited_for_until_somebody_asks_to_stop(tmp_
     began_s = time.monotonic()
     asked.progress = lambda share, text: asked.stop.ask()
     with pytest.raises(InterruptError, match="was still opening the bench"):
-        carry_out(asked, process('{"kind": "progress", "share": 0, "text": ""}', then="time.sleep(60)"))
+        execute(asked, process('{"kind": "progress", "share": 0, "text": ""}', then="time.sleep(60)"))
     assert time.monotonic() - began_s >= HUNG_AFTER_S
 
 
@@ -166,7 +166,7 @@ def test_lines_stops_and_signs_of_life_reach_it(tmp_path: Path):
         f"        print({ENDED!r}, flush=True)\n"
         "        break\n"
     )
-    carry_out(asked, process(TURNED, then=read))
+    execute(asked, process(TURNED, then=read))
     kinds = [line.partition('"kind": "')[2].partition('"')[0] for line in log.read_text().splitlines()]
     assert kinds == ["run", "typed", "typed", "stop", "here"]
 
@@ -177,7 +177,7 @@ def test_its_log_is_told_as_that_of_this_process(tmp_path: Path, caplog: pytest.
     plain = line.replace("TEXT", "plain").replace("TRACE", "")
     traced = line.replace("TEXT", "traced").replace("TRACE", "Traceback: line 7")
     shown = Silent()
-    carry_out(request(tmp_path, terminal=shown), process(TURNED, plain, traced, ENDED))
+    execute(request(tmp_path, terminal=shown), process(TURNED, plain, traced, ENDED))
     assert shown.told == []
     records = {
         record.getMessage(): record for record in caplog.records if record.name == "hil.engine.run.run"
@@ -189,7 +189,7 @@ def test_its_log_is_told_as_that_of_this_process(tmp_path: Path, caplog: pytest.
 
 def test_a_simulated_bench_stays_in_this_process_unless_its_file_says_otherwise(tmp_path: Path):
     asked = RunRequest(plan("[{hold_speed: {speed_km_h: 0, duration_s: 0.1}}]"), sim_bench("here"), tmp_path)
-    assert carry_out(asked, ["/bin/false"]).error is None
+    assert execute(asked, ["/bin/false"]).error is None
 
 
 def test_hardware_whose_process_was_lost_is_listened_to_once_its_loop_has_turned(tmp_path: Path):
@@ -199,5 +199,5 @@ def test_hardware_whose_process_was_lost_is_listened_to_once_its_loop_has_turned
     for said, expected in ((TOLD, "nothing was commanded"), (TURNED, "safe: not confirmed (bus 'rmcu': ")):
         asked = RunRequest(plan("[{wait: {duration_s: 1}}]"), hardware, tmp_path)
         with pytest.raises(BenchError) as caught:
-            carry_out(asked, process(said, then="sys.exit(1)"))
+            execute(asked, process(said, then="sys.exit(1)"))
         assert expected in str(caught.value)

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from drivers import read_rmcu
-from hil.core.checksum import crc8_many
+from hil.core.can.checksum import crc8_many
+from hil.core.can.frames import FrameBlock, frames, inserted
+from hil.core.can.signals import Payloads
 from hil.core.errors import BadInputError
-from hil.core.frames import FrameBlock, frames, inserted
 from hil.core.recording import read_frames
-from hil.core.signals import Payloads
 from hil.engine.replay._bench import BenchDecoder
 from tests.benches_for_tests import SIM
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from hil.core.can.frames import frames
 from hil.core.can_logs import CanLog
-from hil.core.frames import frames
 from hil.engine.replay._channels import chosen_buses, listed, merged
 
 SECOND = 10**9

@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hil.core.can.frames import frames
 from hil.core.can_logs import CanLog
 from hil.core.errors import BadInputError
-from hil.core.frames import frames
 from hil.engine.replay._channels import merged
+from hil.engine.replay._clocks import remarks_on_clocks
 
 SECOND = 10**9
 
@@ -38,6 +39,7 @@ def test_a_log_of_another_zone_is_refused_with_the_shift_that_mends_it(hours: fl
 
 def test_parts_of_one_drive_may_lie_an_hour_apart(tmp_path: Path) -> None:
     found = merged([log(tmp_path, "a.log", "can0", 1e6), log(tmp_path, "b.log", "can0", 1e6 + 3600)])
+    assert remarks_on_clocks([log(tmp_path, "a.log", "can0", 1e6)], {}) == []
     assert found.remarks == ["between a.log and b.log lie 3581 s without a frame"]
     both = found.of("can0")
     assert both is not None

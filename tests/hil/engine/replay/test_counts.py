@@ -8,8 +8,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, frames, joined
 from hil.core.can_logs import CanLog
-from hil.core.frames import ERROR_FRAME, EXTENDED, frames, joined
 from hil.engine.replay._counts import counted
 
 

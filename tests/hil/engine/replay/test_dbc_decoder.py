@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hil.core.frames import frames, joined
+from hil.core.can.frames import frames, joined
 from hil.core.recording import read_recording
 from hil.engine.replay._channels import Frames
 from hil.engine.replay._dbc import DbcDecoder

@@ -1,4 +1,4 @@
-"""A run that is held: by an interlock, a limit, the operator; begun again where it was, or ended in order."""
+"""A run that is held: by an interlock, a limit, the operator; resumed where it was, or ended in order."""
 
 from __future__ import annotations
 
@@ -67,9 +67,9 @@ def test_an_interlock_holds_the_run_and_the_step_is_begun_again(tmp_path: Path) 
     inside = recording.between(hold.start_s + 0.01, hold.end_s)
     assert np.all(inside["motor_torque_ref_nm"] == 0.0)
     assert np.ptp(inside["wheel_speed_rad_s"]) < 1.0  # its speed is held
-    begun = recording.between(whole.start_s, whole.start_s + 0.1)["vehicle_speed_m_s"]
-    assert np.allclose(begun, 5 / 3.6, atol=0.2)  # as it was begun the first time
-    assert (len(events(outcome, "hold")), outcome.result.end_steps[:11]) == (2, "carried out")
+    started = recording.between(whole.start_s, whole.start_s + 0.1)["vehicle_speed_m_s"]
+    assert np.allclose(started, 5 / 3.6, atol=0.2)  # as it was started the first time
+    assert (len(events(outcome, "hold")), outcome.result.end_steps[:11]) == (2, "executed")
 
 
 def test_dynos_that_held_their_speed_hold_it_again(tmp_path: Path) -> None:
@@ -95,7 +95,7 @@ def test_an_interlock_that_stays_open_ends_the_run_with_its_end_steps(tmp_path: 
     outcome = held(tmp_path, "ended", open_between(3.0, 99.0), interlocks=shut(timeout_s=1.5))
     assert isinstance(outcome.error, OrderlyEndError)
     assert outcome.error.fix == "shut the cage"
-    assert outcome.result.end_steps.startswith("carried out: ramp_down; the wheels turn at 0.0")
+    assert outcome.result.end_steps.startswith("executed: ramp_down; the wheels turn at 0.0")
     assert outcome.result.holds[0].ended_by == "end of the run"
     assert {c.verdict for c in outcome.result.criteria} == {"not_judged"}
     assert outcome.result.safe_state == "confirmed"
@@ -137,7 +137,7 @@ def test_ramp_down_ends_the_run_with_its_end_steps_and_no_jump_of_torque(tmp_pat
     outcome = held(tmp_path, "down", limits=limits("ramp_down"))
     assert isinstance(outcome.error, OrderlyEndError)
     assert "shaft_torque_left_nm reached" in outcome.error.what
-    assert outcome.result.end_steps.startswith("carried out: ramp_down")
+    assert outcome.result.end_steps.startswith("executed: ramp_down")
     torque = read_recording(outcome.recording, allow_missing=True)["motor_torque_ref_nm"]
     assert np.min(np.diff(torque)) > -0.2
 
@@ -155,15 +155,15 @@ def test_what_is_reached_at_the_very_end_still_ends_the_run_in_error(
     waits = plan("[{wait: {duration_s: 2.35}}]", end="[{ramp_down: {duration_s: 1.5}}]")
     outcome = run_plan(RunRequest(waits, file, tmp_path))
     assert isinstance(outcome.error, OrderlyEndError)
-    assert outcome.result.end_steps.startswith("carried out")
+    assert outcome.result.end_steps.startswith("executed")
     assert outcome.result.verdict == "error"
 
 
 def test_a_pause_without_an_operator_ends_the_run_in_order(tmp_path: Path) -> None:
-    outcome = held(tmp_path, "nobody", limits=limits("pause"))
+    outcome = held(tmp_path, "no one", limits=limits("pause"))
     assert isinstance(outcome.error, OrderlyEndError)
     assert "no terminal" in outcome.error.what
-    assert outcome.result.end_steps.startswith("carried out")
+    assert outcome.result.end_steps.startswith("executed")
 
 
 def test_a_limit_pauses_until_the_operator_lets_it_go_on(tmp_path: Path) -> None:
@@ -188,7 +188,7 @@ def test_the_operator_pauses_or_ends(typed: str, error: Any, tmp_path: Path) -> 
     assert outcome.error is None if error is None else isinstance(outcome.error, error)
     if error is None:
         assert (outcome.result.verdict, outcome.result.holds[0].ended_by) == ("pass", "operator")
-    assert outcome.result.end_steps.startswith("carried out")
+    assert outcome.result.end_steps.startswith("executed")
 
 
 @pytest.mark.parametrize("way", ["operator", "device", "interlock"])
@@ -202,7 +202,7 @@ def test_an_emergency_stop_moves_nothing_any_more(way: str, tmp_path: Path) -> N
     locks = shut(response="emergency_stop") if way == "interlock" else {}
     outcome = held(tmp_path, f"stop-{way}", readings[way], terminal=operator, interlocks=locks)
     assert isinstance(outcome.error, EmergencyStopError)
-    assert outcome.result.end_steps.startswith("not carried out")
+    assert outcome.result.end_steps.startswith("not executed")
     assert outcome.result.safe_state == "confirmed"
     assert events(outcome, "emergency_stop")
     assert outcome.result.emergency_stop is not None

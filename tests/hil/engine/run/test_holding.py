@@ -74,7 +74,7 @@ def until(end_s: float, *ranges: Range) -> Callable[[float], list[Range]]:
         ([CAGE], until(0.0), {}, 0.5, "well again"),
         # opens again while it counts as well: counting begins anew
         ([CAGE], lambda s: [CAGE] if s < 1.0 or 1.3 <= s < 1.4 else [], {}, 1.9, "well again"),
-        ([CAGE], until(1.0, CAGE), {0.2: "r"}, 1.5, "well again"),  # nobody can wave an interlock through
+        ([CAGE], until(1.0, CAGE), {0.2: "r"}, 1.5, "well again"),  # no one can wave an interlock through
         ([HEAT], until(1.0, HEAT), {2.0: "r"}, 2.0, "operator"),
         ([HEAT], until(1.0, HEAT), {0.5: "r", 2.5: "r"}, 2.5, "operator"),  # too early is not kept
         ([HEAT, CAGE], until(2.0, CAGE), {1.0: "r"}, 2.5, "well again"),  # both must be over
@@ -91,9 +91,9 @@ def test_it_goes_on_when_every_cause_is_over(
     floor = Floor(stands, typed)
     assert floor.held_s(*causes) == pytest.approx(held_s, abs=LOOK_S + 0.005)
     assert floor.hold.holds[0].ended_by == ended_by
-    assert floor.hold.said == ""
-    (begun, over) = floor.events
-    assert begun[1].startswith("held, torque off, the dynos hold their speed: ")
+    assert floor.hold.causes_shown == ""
+    (started, over) = floor.events
+    assert started[1].startswith("held, torque off, the dynos hold their speed: ")
     assert over[1].endswith(ended_by)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hil.core.frames import SENT_BY_HOST
+from hil.core.can.frames import SENT_BY_HOST
 from hil.engine.run.jit_warm_up import warm_up
 from tests.benches_for_tests import running
 

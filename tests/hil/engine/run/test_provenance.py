@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from hil.core.versions import versions
+from hil.core.runtime.versions import versions
 from hil.engine.run.provenance import hashes
 
 

@@ -224,7 +224,7 @@ def test_a_recording_that_cannot_take_the_result_does_not_keep_it_from_being_tol
     [({}, True), ({"terminal": object()}, False), ({"confirmed_by": "A. Prüferin"}, False)],
 )
 def test_a_prompt_on_hardware_needs_a_terminal_or_a_name(answers, refused, tmp_path):
-    hardware = sim_bench("hardware", simulation=None)  # nobody gives it its bus
+    hardware = sim_bench("hardware", simulation=None)  # no one gives it its bus
     request = RunRequest(plan("[{operator_prompt: {text: Shut the guard}}]"), hardware, tmp_path, **answers)
     with pytest.raises(BadInputError if refused else BenchError) as caught:
         run_plan(request)
@@ -242,7 +242,7 @@ class Leaving:
 
     def progress(self, share, text):
         if share > 0.4:
-            self.gone = "nobody watches this process"
+            self.gone = "no one watches this process"
 
     def concluded(self, *, armed, unsafe):
         self.told.append((armed, unsafe))
@@ -254,8 +254,8 @@ def test_a_run_that_nobody_watches_any_more_ends_in_order(tmp_path):
     request.progress = watched.progress
     outcome = run_plan(request)
     assert isinstance(outcome.error, OrderlyEndError)
-    assert "nobody watches this process" in str(outcome.error)
-    assert outcome.result.end_steps.startswith("carried out: ramp_down")
+    assert "no one watches this process" in str(outcome.error)
+    assert outcome.result.end_steps.startswith("executed: ramp_down")
     assert outcome.result.safe_state == "confirmed"
     assert watched.told == [(True, [])]
 

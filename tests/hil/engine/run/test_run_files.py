@@ -82,7 +82,7 @@ def test_inputs_are_there_though_the_run_never_ends(stored: Any, tmp_path: Path)
     run = left.metadata["run"]
     assert (run["plan"], run["operator"], run["simulated"]) == ("test", "O. Perator", "true")
     assert run["prompts_confirmed_by"] == "P."
-    assert "hazard_confirmed_by" not in run  # nobody did
+    assert "hazard_confirmed_by" not in run  # no one did
     assert left.metadata["dut"] == stored.request.bench.dut
     assert set(left.metadata["calibration"]) == set(stored.request.bench.calibration)
 

@@ -1,4 +1,4 @@
-"""The way to the safe state: nobody's failure keeps another device from being served."""
+"""The way to the safe state: no one's failure keeps another device from being served."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def test_a_device_that_fails_is_told_of_and_the_others_are_safe(
         seen: list[Exception] = []
         complaints = reach_safe_state(bench, seen.append)
         assert complaints == [f"valve did not confirm its safe state within 0.05 s{said}"]
-        assert len(seen) == faults  # the program's mistake is told once, however often it is tried
+        assert len(seen) == faults  # the program's mistake is reported once, however often it is tried
         assert valve.told > 1
         assert bench.dyno.is_safe()
 

@@ -125,7 +125,7 @@ def test_what_cannot_be_read_keeps_every_bench_from_being_armed(machine: Path) -
     (place / "torn.json").write_text("{")
     with pytest.raises(BenchError, match="cannot be read"):
         refuse_latched(hardware())
-    refuse_latched(sim_bench("nobody else has it"))
+    refuse_latched(sim_bench("no one else has it"))
     assert reset(hardware(), "A. Tester") == []
     refuse_latched(hardware())
     (place / "torn.json").write_text("{}")

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.usefixtures("heard_hangups")
 
 def test_whoever_works_is_told_at_once_and_each_time() -> None:
     stop, told = StopRequest(), list[str]()
-    stop.ask()  # nobody works: it is kept
+    stop.ask()  # no one works: it is kept
     assert stop.times == 1
     with stop.telling(lambda: told.append("outer")):
         assert told == ["outer"]

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hil.core.signals import Signal
+from hil.core.can.signals import Signal
 from hil.plant.closed_loop import rounded
 
 

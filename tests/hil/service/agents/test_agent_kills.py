@@ -1,4 +1,4 @@
-"""An agent, or its service, killed at random moments of a queue: nothing is lost, nothing is begun twice."""
+"""An agent, or its service, killed at random moments of a queue: nothing is lost, nothing starts twice."""
 
 from __future__ import annotations
 
@@ -46,9 +46,9 @@ def _look_at(service: Served, kept: Path, runs: list[int], most_cut: int) -> Non
     ended = [service.over(run) for run in runs]
     assert [one["id"] for one in service.get("/runs")] == runs[::-1]
     cut = [run for run in ended if run["state"] != "ended"]
-    assert len(cut) <= most_cut, "one bench carries out one run, and a service's end is not an agent's"
+    assert len(cut) <= most_cut, "one bench executes one run, and a service's end is not an agent's"
     assert {run["state"] for run in cut} <= {"interrupted"}
-    assert not list((kept / "runs").glob("*.before-*")), "each was begun once"
+    assert not list((kept / "runs").glob("*.before-*")), "each was started once"
     for run in ended:
         _look_at_files(service.data, kept, run["id"], run["state"])
 

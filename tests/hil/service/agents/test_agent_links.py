@@ -16,9 +16,9 @@ import pytest
 
 from hil.agent._kept_runs import KeptRuns
 from hil.agent._service import AwayError, TheService
+from hil.api_schemas.agent import RunEnding, TakenRun
+from hil.api_schemas.api import RunData
 from hil.client import RefusedError
-from hil.messages.agent import RunEnding, TakenRun
-from hil.messages.api import RunData
 from tests.hil.service.served import SHORT, Served
 from tests.hil.service.working import bench_called, working
 
@@ -94,7 +94,7 @@ def test_what_comes_damaged_or_not_at_all_comes_again_until_it_is_right(
                 assert service.get(f"/runs/{run}/files/{name}") == there.read_bytes() or name[-5:] == ".json"
         assert did.count("damaged") == _DAMAGED
         assert "let go" in did
-        assert not list(agent.data.glob("runs/*.before-*")), "none was begun twice"
+        assert not list(agent.data.glob("runs/*.before-*")), "none was started twice"
 
 
 def _taken(run: int) -> TakenRun:
@@ -117,22 +117,22 @@ def _taken(run: int) -> TakenRun:
 
 def test_a_run_is_on_the_disk_before_it_is_begun_and_until_the_service_has_it(tmp_path: Path) -> None:
     runs = KeptRuns(tmp_path, 30.0)
-    begun = runs.begin(_taken(3))
-    source = Path(begun.taken.plan_source)
+    started = runs.begin(_taken(3))
+    source = Path(started.taken.plan_source)
     assert (source.read_text(), (source.parent / "mine.toml").read_text()) == (SHORT, "x = 1")
     (after_a_kill,) = KeptRuns(tmp_path, 30.0).pending()
-    assert (after_a_kill.id, after_a_kill.ending, after_a_kill.taken) == (3, None, begun.taken)
-    (begun.folder / "result.json").write_text("{}")
-    begun.end(RunEnding(state="ended", exit_code=0))
+    assert (after_a_kill.id, after_a_kill.ending, after_a_kill.taken) == (3, None, started.taken)
+    (started.folder / "result.json").write_text("{}")
+    started.end(RunEnding(state="ended", exit_code=0))
     (ended,) = KeptRuns(tmp_path, 30.0).pending()
     told = ended.ending_with(ended.files())
     assert (told.state, told.exit_code, [made.name for made in told.files]) == ("ended", 0, ["result.json"])
     ended.over()
     assert list(KeptRuns(tmp_path, 30.0).pending()) == []
     runs.clear()
-    assert (begun.folder / "result.json").exists(), "for 30 days"
+    assert (started.folder / "result.json").exists(), "for 30 days"
     KeptRuns(tmp_path, 0.0).clear()
-    assert not begun.folder.exists()
+    assert not started.folder.exists()
 
 
 def test_a_run_that_the_service_will_not_have_stays_and_one_of_its_number_takes_another_place(
@@ -150,7 +150,7 @@ def test_a_run_that_the_service_will_not_have_stays_and_one_of_its_number_takes_
     assert (kept / "recording.mcap").read_bytes() == b"measured"
     assert [run.id for run in runs.pending()] == [3]
     third = runs.begin(_taken(3))
-    assert [run.folder for run in runs.pending()] == [third.folder], "what was put aside is nobody's work"
+    assert [run.folder for run in runs.pending()] == [third.folder], "what was put aside is no one's work"
 
 
 def test_the_next_service_is_asked_when_one_does_not_answer(service: Served) -> None:

@@ -1,4 +1,4 @@
-"""Agents as their users have them: real ones and a real service on loopback, killed and begun again."""
+"""Agents as their users have them: real ones and a real service on loopback, killed and started again."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from typing import Any
 import pytest
 
 from hil.cli._app import guarded
-from hil.cli.commands.bench_agent import BenchAgent
+from hil.cli.commands.bench_agent import execute
+from hil.cli.options.benches import BenchAgent
 from hil.core.errors import BadInputError
-from hil.core.locks import lock_on
+from hil.core.files.locks import lock_on
 from tests.hil.service.served import ASKING, HIL, SHORT, RefusedError, Served, environment_of, served
-from tests.hil.service.working import Working, begun, bench_called, working
+from tests.hil.service.working import Working, bench_called, started, working
 
 #: Some seconds of work in virtual time, whoever looks on.
 LONG = SHORT.replace("name: short", "name: long").replace(
@@ -58,14 +59,14 @@ def test_a_run_on_an_agents_bench_is_as_one_of_the_services_own(service: Served,
 @pytest.mark.slow
 def test_a_run_of_an_agent_is_shown_live_answered_held_and_ended(service: Served, agent: Working) -> None:
     first = service.queue("asking", bench="far")
-    service.until(first, lambda run: "cage" in run["told"])
+    service.until(first, lambda run: "cage" in run["message"])
     assert service.get("/benches/far")["running"] == first
     growing = service.data / f"runs/{first:06d}/recording.mcap"
     _until(lambda: growing.exists() and growing.stat().st_size > 10_000)
     service.post(f"/runs/{first}/answer", {"text": "shut"})
     assert service.over(first)["verdict"] == "pass"
     second = service.queue("asking", bench="far")
-    service.until(second, lambda run: "cage" in run["told"])
+    service.until(second, lambda run: "cage" in run["message"])
     service.post(f"/runs/{second}/abort")
     over = service.over(second)
     assert (over["exit_code"], over["safe_state"]) == (130, "confirmed")
@@ -84,7 +85,7 @@ def test_what_a_plan_will_do_is_predicted_where_the_bench_is(service: Served, ag
 @pytest.mark.slow
 def test_an_emergency_stop_reaches_the_agent_which_latches_its_bench(service: Served, agent: Working) -> None:
     run = service.queue("asking", bench="far")
-    service.until(run, lambda found: "cage" in found["told"])
+    service.until(run, lambda found: "cage" in found["message"])
     waiting = service.queue(bench="far")
     assert service.post("/benches/far/emergency-stop")["state"] == "emergency_stop"
     over = service.over(run)
@@ -106,13 +107,13 @@ def test_a_run_goes_on_while_the_service_is_killed_and_is_steered_by_the_next(
         service.give("asking", ASKING)
         with working(service.url, tmp_path / "agent", far, state=tmp_path / "far") as agent:
             run = service.queue("asking", bench="far")
-            service.until(run, lambda found: "cage" in found["told"])
+            service.until(run, lambda found: "cage" in found["message"])
             service.process.kill()
             service.process.wait(10)
             time.sleep(2.0)
             assert not (agent.folder_of(run) / "result.json").exists(), "it waits for an answer"
             with served(data, "--port", port, state=state) as again:
-                again.until(run, lambda found: "cage" in found["told"])
+                again.until(run, lambda found: "cage" in found["message"])
                 again.post(f"/runs/{run}/answer", {"text": "shut"})
                 over = again.over(run)
     assert (over["state"], over["exit_code"], over["verdict"]) == ("ended", 0, "pass")
@@ -152,10 +153,10 @@ def test_a_killed_agents_run_ends_safely_and_comes_when_the_agent_is_back(tmp_pa
         with working(service.url, tmp_path / "agent", far, state=tmp_path / "far") as agent:
             cut = service.queue("asking", bench="far")
             waiting = service.queue(bench="far")
-            service.until(cut, lambda found: "cage" in found["told"])
+            service.until(cut, lambda found: "cage" in found["message"])
             agent.kill()
         _until(lambda: service.get("/benches/far")["state"] == "away")
-        assert service.get(f"/runs/{cut}")["state"] == "running", "nobody but the agent knows"
+        assert service.get(f"/runs/{cut}")["state"] == "running", "no one but the agent knows"
         with working(service.url, tmp_path / "agent", far, state=tmp_path / "far"):
             over = service.over(cut)
             assert (over["state"], over["safe_state"]) == ("interrupted", "confirmed")
@@ -170,7 +171,7 @@ def test_ending_an_agent_ends_its_run_safely_and_delivers_it(tmp_path: Path, far
         service.give("asking", ASKING)
         with working(service.url, tmp_path / "agent", far, state=tmp_path / "far") as agent:
             run = service.queue("asking", bench="far")
-            service.until(run, lambda found: "cage" in found["told"])
+            service.until(run, lambda found: "cage" in found["message"])
             agent.process.terminate()
             assert agent.process.wait(60) == 130
         over = service.get(f"/runs/{run}")
@@ -193,15 +194,15 @@ def test_two_agents_work_at_once_with_tokens_of_their_role(tmp_path: Path, far: 
         ):
             runs = [service.queue("asking", bench=bench) for bench in ("far", "near")]
             for run in runs:
-                service.until(run, lambda found: "cage" in found["told"])
+                service.until(run, lambda found: "cage" in found["message"])
             assert [service.get(f"/runs/{run}")["state"] for run in runs] == ["running", "running"]
             for run in runs:
                 service.post(f"/runs/{run}/answer", {"text": "shut"})
             assert [service.over(run)["verdict"] for run in runs] == ["pass", "pass"]
-            second = begun(service.url, tmp_path / "three", far, state=tmp_path / "s3", token=cell)
+            second = started(service.url, tmp_path / "three", far, state=tmp_path / "s3", token=cell)
             assert _said(second) == 3, "the name is the first agent's"
         for wrong in ("hil_nonsense", _token(data, "eve=operator")):
-            other = begun(service.url, tmp_path / "four", far, state=tmp_path / "s3", token=wrong)
+            other = started(service.url, tmp_path / "four", far, state=tmp_path / "s3", token=wrong)
             assert _said(other) == 2
         with pytest.raises(RefusedError, match="403"):
             service.ask("GET", "/api/v1/runs", token=cell)
@@ -217,9 +218,9 @@ def test_what_an_agent_cannot_use_is_said(tmp_path: Path) -> None:
         (["sim"], "", 0.0, "--for is 0"),
     ):
         with pytest.raises(BadInputError, match=said):
-            BenchAgent(data=tmp_path / "a", bench=bench, name=name, for_s=for_s, **usual).carry_out()
+            execute(BenchAgent(data=tmp_path / "a", bench=bench, name=name, for_s=for_s, **usual))
     with lock_on(tmp_path), pytest.raises(BadInputError, match="another agent keeps its data here"):
-        BenchAgent(data=tmp_path, bench=["sim"], name="", for_s=None, **usual).carry_out()
+        execute(BenchAgent(data=tmp_path, bench=["sim"], name="", for_s=None, **usual))
 
 
 def test_a_service_has_benches_of_its_own_or_says_that_it_has_none(

@@ -15,9 +15,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sqlalchemy import Engine, create_engine, text
 
+from hil.api_schemas.agent import AgentBench, AgentReport, FileMade, RunEnding
 from hil.core.errors import BadInputError, BenchError
 from hil.engine.ipc.ipc_messages import EmergencyAsked
-from hil.messages.agent import AgentBench, AgentReport, FileMade, RunEnding
 from hil.service.agents.agents import Agents
 from hil.service.agents.remote_bench import AWAY_S
 from hil.service.agents.run_upload import RunUploads
@@ -30,15 +30,15 @@ ONE, OTHER = "1" * 32, "2" * 32
 
 
 class _There:
-    """A service's knowledge of agents, begun anew as often as wanted."""
+    """A service's knowledge of agents, started again as often as wanted."""
 
     def __init__(self, folder: Path, engine: Engine) -> None:
         self.folder, self.engine = folder, engine
         self.runs, self.leases = RunStore(engine), LeaseStore(engine)
-        self.agents = self.begun()
+        self.agents = self.started()
         self.run_uploads = RunUploads("service", self.runs, folder)
 
-    def begun(self, service: str = "service") -> Agents:
+    def started(self, service: str = "service") -> Agents:
         return Agents(
             self.engine,
             service,
@@ -138,7 +138,7 @@ def test_an_agent_that_is_away_keeps_its_run_also_for_the_next_service(there: _T
     run = there.queue()
     there.agents.take(ONE, "far")
     there.lapse()
-    there.agents = there.begun()
+    there.agents = there.started()
     bench = there.agents.benches["far"]
     state, why = bench.state()
     assert state == "away"
@@ -151,12 +151,12 @@ def test_another_service_of_the_database_takes_an_agents_bench_and_run_over(ther
     there.agents.heard(ONE, _report())
     run = there.queue()
     there.agents.take(ONE, "far")
-    second = there.begun("another service")
+    second = there.started("another service")
     assert second.heard(ONE, _report(running=run)) == (["far"], {})
     running = second.benches["far"].running
     assert running is not None
     assert running.data.id == run
-    assert [row.benches for row in there.begun().all()] == []
+    assert [row.benches for row in there.started().all()] == []
     run_uploads = RunUploads("another service", there.runs, there.folder / "second")
     found = run_uploads.run_of(run, ONE)
     assert found is not None
@@ -198,7 +198,7 @@ def test_an_emergency_stop_of_a_bench_that_was_let_go_is_told_whoever_has_it_nex
     there.agents.remember_stop("far", EmergencyAsked(by="anna"))
     there.agents.let_go("far", "anna")
     assert there.agents.benches["far"].state()[0] == "emergency_stop"
-    there.agents = there.begun()
+    there.agents = there.started()
     assert there.agents.heard(agent, _report())[1] == {}
     there.queue()
     orders = there.agents.orders(agent, {})
@@ -217,7 +217,7 @@ def test_an_emergency_stop_is_told_until_the_agent_has_obeyed_also_by_the_next_s
     there.queue()
     assert there.agents.orders(ONE, {}).waiting == []
     there.lapse()
-    there.agents = there.begun()
+    there.agents = there.started()
     state, why = there.agents.benches["far"].state()
     assert state == "emergency_stop"
     assert "requested by anna; its agent has not confirmed it" in why
@@ -227,7 +227,7 @@ def test_an_emergency_stop_is_told_until_the_agent_has_obeyed_also_by_the_next_s
     there.agents.heard(ONE, _report(obeyed=[one.id for one in orders]))
     assert there.agents.orders(ONE, {}).orders == []
     assert there.agents.benches["far"].state()[0] == "free", "what the agent says of its own latch counts"
-    assert there.begun().benches["far"].stop_by == ""
+    assert there.started().benches["far"].stop_by == ""
 
 
 def test_what_makes_safer_is_told_late_and_what_lets_something_move_is_not(there: _There) -> None:

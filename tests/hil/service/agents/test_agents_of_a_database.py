@@ -35,10 +35,10 @@ def test_another_service_takes_a_lost_ones_bench_and_run_over(server: Cluster, t
     ):
         one.give("asking", ASKING)
         run = one.queue("asking", bench="far")
-        one.until(run, lambda found: "cage" in found["told"])
+        one.until(run, lambda found: "cage" in found["message"])
         one.process.kill()
         one.process.wait(10)
-        two.until(run, lambda found: "cage" in found["told"])
+        two.until(run, lambda found: "cage" in found["message"])
         assert two.get("/benches/far")["running"] == run
         two.post(f"/runs/{run}/answer", {"text": "shut"})
         over = two.over(run)
@@ -55,7 +55,7 @@ def test_an_emergency_stop_reaches_an_agent_while_the_database_hangs(server: Clu
     ):
         service.give("asking", ASKING)
         run = service.queue("asking", bench="far")
-        service.until(run, lambda found: "cage" in found["told"])
+        service.until(run, lambda found: "cage" in found["message"])
         with server.frozen():
             assert service.post("/benches/far/emergency-stop")["state"] == "emergency_stop"
             _until((agent.folder_of(run) / "result.json").exists)

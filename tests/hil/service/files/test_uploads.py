@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from sqlalchemy import Engine
 
+from hil.api_schemas.upload import KeptApart
 from hil.core.errors import BadInputError
 from hil.engine.bench.bench_file import shipped
-from hil.messages.upload import KeptApart
 from hil.service.files.catalogues import controller_catalogue, model_catalogue
 from hil.service.files.legacy_import import LegacyImport
 from hil.service.files.plans import Plans

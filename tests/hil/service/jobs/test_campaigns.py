@@ -11,8 +11,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from hil.api_schemas.campaign import CAMPAIGN_OVER, CampaignData, CampaignWanted
 from hil.client import Client, RefusedError
-from hil.messages.campaign import CAMPAIGN_OVER, CampaignData, CampaignWanted
 from tests.hil.analysis.tuning.trials import PLAN
 from tests.hil.campaign.short import CAMPAIGN
 from tests.hil.service.served import Served, served
@@ -130,9 +130,9 @@ def test_a_cancelled_campaign_keeps_what_was_done_and_goes_on(there: Served) -> 
     client = Client(there.url)
     first = client.add_campaign(CampaignWanted(text=LONG, files={"short.yaml": PLAN}))
     second = client.add_campaign(WANTED)
-    begun = until(client, first.id, lambda found: found.done > 0)
-    assert (begun.state, client.campaign(second.id).state) == ("running", "waiting")
-    assert begun.controllers[0].of == begun.done
+    started = until(client, first.id, lambda found: found.done > 0)
+    assert (started.state, client.campaign(second.id).state) == ("running", "waiting")
+    assert started.controllers[0].of == started.done
     with pytest.raises(RefusedError, match=f"campaign {first.id} is running"):
         client.remove_campaign(first.id)
     assert client.cancel_campaign(second.id).state == "cancelled"
@@ -154,7 +154,7 @@ def test_a_campaign_survives_its_service(tmp_path: Path) -> None:
     with served(data, "--workers", "2", state=tmp_path / "state") as one:
         client = Client(one.url)
         asked = client.add_campaign(CampaignWanted(text=LONG, files={"short.yaml": PLAN}))
-        begun = until(client, asked.id, lambda found: found.done > 0)
+        started = until(client, asked.id, lambda found: found.done > 0)
         one.process.kill()
         one.process.wait()
     parts = data / f"campaigns/{asked.id:06d}/results/simulations"
@@ -163,7 +163,7 @@ def test_a_campaign_survives_its_service(tmp_path: Path) -> None:
         found = over(Client(one.url), asked.id)
         assert (found.state, found.done) == ("ended", found.simulations), found.reason
     assert len(kept) > 0
-    assert begun.done < found.simulations
+    assert started.done < found.simulations
     assert {path: path.stat().st_mtime_ns for path in kept} == kept  # nothing was done twice
     table = pd.read_parquet(parts.parent / "simulations.parquet")
     assert list(table["simulation"]) == list(range(found.simulations))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from hil.messages.study import StudyData
+from hil.api_schemas.study import StudyData
 from hil.service.jobs.job_repository import JobRepository
 
 

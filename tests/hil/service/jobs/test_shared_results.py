@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from sqlalchemy import Engine
 
-from hil.messages.study import STUDY_OVER, StudyData
+from hil.api_schemas.study import STUDY_OVER, StudyData
 from hil.service.archive import Archive, ArchiveAwayError
 from hil.service.jobs.job_repository import JobRepository, files_in_results
 from hil.service.jobs.shared_results import SharedResults

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from hil.api_schemas.api import RunWanted
+from hil.api_schemas.study import STUDY_OVER, DiagnosisWanted, IdentificationWanted, StudyData
 from hil.client import Client, RefusedError
-from hil.messages.api import RunWanted
-from hil.messages.study import STUDY_OVER, DiagnosisWanted, IdentificationWanted, StudyData
 from tests.hil.service.served import Served, served
 
 #: A chirp of some seconds: enough for a fit, not for a good one.
@@ -143,7 +143,7 @@ def test_a_service_that_is_killed_leaves_an_interrupted_study(tmp_path: Path) ->
 
 
 def _state_of(process: int) -> str:
-    """`Z` of one that has ended and that nobody has asked for."""
+    """`Z` of one that has ended and that no one has asked for."""
     try:
         return Path(f"/proc/{process}/stat").read_text("utf-8").rpartition(")")[2].split()[0]
     except OSError:

@@ -1,4 +1,4 @@
-"""Which service drives a bench, and which has begun a run: several may share a database."""
+"""Which service drives a bench, and which has started a run: several may share a database."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ def of_bus(
     ("frames", "errors", "expected", "said"),
     [
         (100, 0, True, ""),
-        (0, 0, False, ""),  # nobody sends unasked
+        (0, 0, False, ""),  # no one sends unasked
         (0, 0, True, "no frame received; the bench file says 500000 bit/s"),
         (0, 3, True, "no frame received but 3 error frames; the bench file says 500000 bit/s"),
         (0, 3, False, "no frame received but 3 error frames; the bench file says 500000 bit/s"),

@@ -56,9 +56,11 @@ def test_another_rate_is_a_fault():
     assert finding.what == "status comes 500 times a second, 1000 are expected"
 
 
-@pytest.mark.parametrize(("duration_s", "told"), [(0.96, False), (1.04, False), (0.94, True), (1.06, True)])
-def test_a_rate_may_be_a_twentieth_off(duration_s, told):
-    assert bool(list(heard().findings_of_rates(duration_s))) is told
+@pytest.mark.parametrize(
+    ("duration_s", "reported"), [(0.96, False), (1.04, False), (0.94, True), (1.06, True)]
+)
+def test_a_rate_may_be_a_twentieth_off(duration_s, reported):
+    assert bool(list(heard().findings_of_rates(duration_s))) is reported
 
 
 def test_what_came_before_is_forgotten():

@@ -1,0 +1,78 @@
+"""Campaigns: many simulations of a plan, as they pass over the API."""
+
+from __future__ import annotations
+
+import datetime
+import hashlib
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from hil.api_schemas.api import Record
+
+#: `stopping`: what is under way is awaited and kept. A campaign whose service ended waits for the next one.
+CampaignState = Literal["waiting", "running", "stopping", "ended", "failed", "cancelled"]
+CAMPAIGN_OVER: tuple[CampaignState, ...] = ("ended", "failed", "cancelled")
+#: A plan, a model or a controller that is sent with a campaign, by the name that the campaign has for it.
+SentName = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}\.(yaml|yml|toml)$")]
+#: The table of a campaign that is over, as one file.
+TABLE = "simulations.parquet"
+
+
+class _Data(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class CampaignWanted(_Data):
+    """A campaign's file, and the files it needs that the service lacks."""
+
+    text: str = Field(max_length=200_000, description="YAML as for `hil campaign`; file names without paths")
+    files: dict[SentName, str] = Field({}, max_length=50, description="plan, model, controllers by name")
+
+    @property
+    def digest(self) -> str:
+        """SHA-256, hexadecimal: the same of what says the same."""
+        return hashlib.sha256(self.model_dump_json().encode()).hexdigest()
+
+
+class CampaignExample(_Data):
+    """A built-in campaign."""
+
+    name: str
+    title: str
+    text: str
+
+
+class PassedShare(_Data):
+    """Number of simulations of a controller that passed so far."""
+
+    controller: str = Field(description="name of its file; '' for the plan's own")
+    passed: int
+    of: int
+    share: float | None = Field(description="null of none")
+    interval: tuple[float, float] | None = Field(
+        description="95 % confidence interval; null if no vehicles were sampled"
+    )
+
+
+class CampaignData(Record):
+    """A campaign: queued, active or finished."""
+
+    name: str
+    title: str
+    plan: str
+    model: str
+    state: CampaignState
+    simulations: int = Field(description="number of simulations requested")
+    done: int = Field(0, description="number of simulations on disk")
+    rate_hz: float = Field(0.0, description="simulations per second, while it runs")
+    draws: int = Field(description="vehicles sampled around each model; 0: values are given")
+    controllers: list[PassedShare] = Field([])
+    pass_share_wanted: float | None
+    passed: bool | None = Field(None, description="true: each controller reaches the required pass rate")
+    requested_by: str
+    asked_at: datetime.datetime
+    ended_at: datetime.datetime | None = None
+    reason: str = Field("", description="reason of a failure")
+    digest: str = Field(description="hash of the request; equal for equal content")
+    files: list[str] = Field([], description="names of its files, when it is finished")

@@ -1,0 +1,89 @@
+"""Two runs side by side, as they pass over the API; differences are listed from the first to the other."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from hil.api_schemas.api import RunData
+from hil.core.result import CriterionVerdict
+
+ChannelName = Annotated[str, Field(min_length=1, max_length=100)]
+SegmentName = Annotated[str, Field(min_length=1, max_length=200)]
+
+
+class _Data(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class InputDifference(_Data):
+    """An input that differs between the two runs; `–` if one has no value."""
+
+    kind: Literal["controller", "model", "bench", "plan"]
+    name: str
+    first: str
+    other: str
+
+
+class ComparedCriterion(_Data):
+    """A criterion of both runs, in its unit; `relative` is (other - first) / |first|."""
+
+    id: str
+    title: str
+    unit: str
+    limit: str
+    values: tuple[float | None, float | None]
+    verdicts: tuple[CriterionVerdict, CriterionVerdict]
+    relative: float | None
+
+
+class ComparedResponse(_Data):
+    """A channel of a segment: rms of the difference over the first run's rms around its mean."""
+
+    segment: str
+    channel: str
+    gap: float | None
+
+
+class ComparedSegment(_Data):
+    """A segment of both runs, over the time from its step; `channels` are those of both recordings."""
+
+    id: str
+    kind: str
+    start_s: float
+    end_s: float
+    channels: list[str]
+
+
+class ComparisonData(_Data):
+    """Two runs of one plan side by side."""
+
+    first: RunData
+    other: RunData
+    plan: str
+    verdicts: tuple[str, str]
+    distance: float | None = Field(description="mean magnitude of the relative differences of the criteria")
+    differences: list[InputDifference]
+    notes: list[str]
+    criteria: list[ComparedCriterion]
+    responses: list[ComparedResponse]
+    segments: list[ComparedSegment]
+
+
+class Envelope(_Data):
+    """Lowest and highest value by bucket; null without data."""
+
+    lowest: list[float | None]
+    highest: list[float | None]
+
+
+class TracesData(_Data):
+    """A channel of both runs over the time from their own steps, in buckets that lose no peak."""
+
+    segment: str
+    channel: str
+    unit: str
+    start_s: float
+    width_s: float
+    runs: tuple[Envelope, Envelope]

@@ -1,0 +1,98 @@
+"""Standard streams that cannot surprise a command: closed, full, cut off by their reader, or ASCII only."""
+
+from __future__ import annotations
+
+import codecs
+import errno
+import io
+import os
+import sys
+from typing import TextIO
+
+from hil.core.errors.wording import printable
+
+#: The reader has gone: no one is left to complain to, and the command's outcome is its own.
+_READER_GONE = (errno.EPIPE, errno.EIO, errno.EBADF)
+_LONGEST_LINE = 2000
+_PLAIN = {
+    "≤": "<=", "≥": ">=", "±": "+-", "²": "^2", "·": "*", "×": "x", "–": "-", "—": "-", "−": "-", "…": "...",
+    "°": " deg", "µ": "u", "μ": "u", "ω": "omega", "ζ": "zeta", "α": "alpha", "τ": "tau", "σ": "sigma",
+    "θ": "theta", "✓": "ok", "✗": "x", "‹": "<", "›": ">", "\u2019": "'", "“": '"', "”": '"',
+}  # fmt: skip
+
+
+class TolerantOutput(io.RawIOBase):
+    """A file descriptor that swallows what cannot be written; `failure` says why the rest is missing.
+
+    A reader that closed its end is no failure.
+    """
+
+    def __init__(self, descriptor: int) -> None:
+        super().__init__()
+        self._descriptor = descriptor
+        self._lost = False
+        self.failure: OSError | None = None
+
+    def writable(self) -> bool:
+        """Always."""
+        return True
+
+    def fileno(self) -> int:
+        """The descriptor, for those who ask what it is."""
+        return self._descriptor
+
+    def isatty(self) -> bool:
+        """Whether a person is looking."""
+        return os.isatty(self._descriptor)
+
+    def write(self, data: object) -> int:
+        """Write everything, or nothing from the first failure on."""
+        rest = memoryview(data).cast("B")  # type: ignore[arg-type]
+        size = len(rest)
+        while rest and not self._lost:
+            try:
+                rest = rest[os.write(self._descriptor, rest) :]
+            except OSError as error:
+                self._lost = True
+                self.failure = None if error.errno in _READER_GONE else error
+        return size
+
+
+def tolerate_outputs() -> tuple[TolerantOutput, TolerantOutput]:
+    """Put tolerant streams in the place of stdout and stderr; closed ones lead nowhere.
+
+    Without descriptors 0 to 2 the next file that is opened would become standard output.
+    """
+    for descriptor in (0, 1, 2):
+        try:
+            os.fstat(descriptor)
+        except OSError:
+            os.dup2(os.open(os.devnull, os.O_RDWR), descriptor)
+    codecs.register_error("plain", _in_plain_words)
+    raw = TolerantOutput(1), TolerantOutput(2)
+    sys.stdout, sys.stderr = _text(raw[0], sys.stdout), _text(raw[1], sys.stderr)
+    if sys.stdin is None:
+        sys.stdin = open(0, closefd=False)  # noqa: SIM115 - a descriptor that stays open
+    return raw
+
+
+def complain(kind: str, text: str) -> None:
+    """Say `kind: text` on standard error, with what cannot be printed in it escaped."""
+    lines = [printable(line, longest=_LONGEST_LINE) for line in text.split("\n")]
+    print(f"{kind}: " + "\n".join(lines), file=sys.stderr)
+
+
+def _text(raw: TolerantOutput, like: TextIO | None) -> TextIO:
+    encoding = like.encoding if like is not None else "utf-8"
+    buffered = io.BufferedWriter(raw)
+    return io.TextIOWrapper(buffered, encoding=encoding, errors="plain", line_buffering=raw.isatty())
+
+
+def _in_plain_words(error: UnicodeError) -> tuple[str, int]:
+    """What an ASCII terminal reads for a character that it does not have."""
+    assert isinstance(error, UnicodeEncodeError)
+    missing = error.object[error.start : error.end]
+    plain = "".join(
+        _PLAIN.get(c, f"\\u{ord(c):04x}" if ord(c) < 0x10000 else f"\\U{ord(c):08x}") for c in missing
+    )
+    return plain, error.end

@@ -1,0 +1,150 @@
+"""All that is wrong with a file, reported at once: each mistake with its line, key and remedy."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from hil.core.errors import BadInputError
+from hil.core.errors.wording import listed
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """One of them; `key` is dotted and tells the line, `what` names it too."""
+
+    key: str
+    what: str
+    fix: str = ""
+
+
+def keyed(mistake: str) -> Mistake:
+    """A mistake whose words begin with its key: `limits.shaft_torque_nm = 'x': ...`."""
+    return Mistake(mistake.partition(": ")[0].partition(" = ")[0], mistake)
+
+
+class MistakesError(BadInputError):
+    """What is wrong with a file or with a part of it, one or several."""
+
+    def __init__(self, what: str, *, where: str = "", fix: str = "", found: tuple[Mistake, ...] = ()) -> None:
+        super().__init__(what, where=where, fix=fix)
+        self.found = found
+
+
+class Mistakes:
+    """What is wrong with a file, collected while the rest of it is still looked at."""
+
+    def __init__(self) -> None:
+        self._found: list[Mistake] = []
+
+    @contextlib.contextmanager
+    def of(self, key: str) -> Iterator[None]:
+        """Collect what is refused of a key, and go on behind the block."""
+        try:
+            yield
+        except MistakesError as error:
+            for mistake in error.found:
+                inner = f"{key}.{mistake.key}" if key and mistake.key else key or mistake.key
+                self._found.append(Mistake(inner, mistake.what, mistake.fix))
+        except BadInputError as error:
+            self._found.append(Mistake(key, error.what, error.fix))
+
+    def refuse(self, where: str, text: str = "") -> None:
+        """Raise what was found, if anything.
+
+        Raises:
+            MistakesError: all mistakes.
+        """
+        refuse(where, self._found, text)
+
+
+def refuse(where: str, mistakes: Iterable[Mistake], text: str = "", fix: str = "") -> None:
+    """Tell the mistakes of a file, each on a line, as many as somebody reads; nothing if there is none.
+
+    Args:
+        where: the file.
+        text: its text, for lines.
+        fix: what to do, where a mistake does not say it.
+
+    Raises:
+        MistakesError: there are mistakes; its `found` has all of them.
+    """
+    found = tuple(dict.fromkeys(mistakes))
+    if len(found) == 1:
+        line = line_of(text, found[0].key)
+        place = f"{where}, line {line}" if line else where
+        raise MistakesError(found[0].what, where=place, fix=found[0].fix or fix, found=found)
+    if found:
+        lines_by_key = lines_of(text)
+        placed = [(nearest(lines_by_key, mistake.key) or 0, mistake) for mistake in found]
+        placed.sort(key=lambda one: one[0])
+        lines = listed([_on_a_line(mistake, line) for line, mistake in placed])
+        raise MistakesError(f"{len(found)} mistakes{lines}", where=where, fix=fix, found=found)
+
+
+def all_of(errors: Iterable[BadInputError]) -> None:
+    """Tell what is wrong with several files; nothing if nothing is.
+
+    Raises:
+        BadInputError: the only error, or all of them.
+    """
+    found = list(errors)
+    if len(found) == 1:
+        raise found[0]
+    if found:
+        words = "".join(f"\n{error}" for error in found)
+        raise BadInputError(f"{len(found)} files cannot be used{words}")
+
+
+def _on_a_line(mistake: Mistake, line: int) -> str:
+    words = f"{mistake.what}; {mistake.fix}" if mistake.fix else mistake.what
+    return f"line {line}: {words}" if line else words
+
+
+_HEADER = re.compile(r"^\s*\[\s*([^\[\]]+?)\s*\]\s*(?:#.*)?$")
+_ENTRY = re.compile(r"^\s*\[\[\s*([^\[\]]+?)\s*\]\]\s*(?:#.*)?$")
+_KEY = re.compile(r"""^\s*((?:[\w-]+|"[^"]*"|'[^']*')(?:\s*\.\s*(?:[\w-]+|"[^"]*"|'[^']*'))*)\s*=""")
+_PART = re.compile(r"""[\w-]+|"[^"]*"|'[^']*'""")
+
+
+def line_of(text: str, key: str) -> int | None:
+    """Line of a dotted key, or of the nearest around it; None if none has a line."""
+    return nearest(lines_of(text), key)
+
+
+def nearest(lines: Mapping[str, int], key: str) -> int | None:
+    """Line of a dotted key of `lines_of`, or of the nearest around it; None if none has one."""
+    while key and key not in lines:
+        key = key.rpartition(".")[0]
+    return lines.get(key)
+
+
+def lines_of(text: str) -> dict[str, int]:
+    """Line of each dotted key (`effects[2].id` in the second of several tables).
+
+    What stands inside of an inline table or of a text over several lines may be missed.
+    """
+    lines: dict[str, int] = {}
+    table = ""
+    entries: Counter[str] = Counter()
+    for number, line in enumerate(text.splitlines(), 1):
+        if header := _HEADER.match(line):
+            table = _dotted(header[1])
+            lines.setdefault(table, number)
+        elif entry := _ENTRY.match(line):
+            name = _dotted(entry[1])
+            entries[name] += 1
+            table = f"{name}[{entries[name]}]"
+            lines.setdefault(name, number)
+            lines[table] = number
+        elif found := _KEY.match(line):
+            name = _dotted(found[1])
+            lines.setdefault(f"{table}.{name}" if table else name, number)
+    return lines
+
+
+def _dotted(name: str) -> str:
+    return ".".join(part.strip("\"'") for part in _PART.findall(name))
