@@ -196,7 +196,7 @@ def _until_safe(process: subprocess.Popen[str]) -> tuple[str, str]:
     raised: BaseException | None = None
     while True:
         try:
-            said = process.communicate()
+            output = process.communicate()
         except KeyboardInterrupt:
             process.send_signal(signal.SIGINT)
         except BaseException as error:
@@ -205,4 +205,4 @@ def _until_safe(process: subprocess.Popen[str]) -> tuple[str, str]:
         else:
             if raised is not None:
                 raise raised
-            return said
+            return output

@@ -23,7 +23,7 @@ def bench_for(config: pytest.Config, folder: Path) -> str | None:
 
 def refuse_unnamed_hardware(config: pytest.Config, found: str) -> None:
     """Raises:
-    BadInputError: a bench.toml that nobody has named describes hardware.
+    BadInputError: a bench.toml that no option names describes hardware.
     """
     if not config.getoption("--bench") and not config.getini("hil_bench"):
         from hil.engine.bench.found_bench import refuse_hardware

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 class Ran:
     """A run that has ended: what was judged, and where its recording and reports are.
 
-    `trouble` is what the command said if the bench failed.
+    `trouble` is what the command printed if the bench failed.
     """
 
     result: RunResult

@@ -20,7 +20,7 @@ import pytest
 from hil.pytest_plugin._folders import leave_if_empty
 from hil.pytest_plugin._ran import Ran
 
-_OUTCOME, _BEGUN = "outcome.json", "has-started"
+_OUTCOME, _STARTED = "outcome.json", "has-started"
 
 
 class CutOffError(Exception):
@@ -34,7 +34,7 @@ def run_once(config: pytest.Config, node: str, start: Any) -> Ran:
         start: runs it, given descriptors that the run has to hold.
 
     Raises:
-        CutOffError: it was begun in this session, and its worker ended before it did.
+        CutOffError: it was started in this session, and its worker ended before it did.
         HilError: it failed; the same for all workers.
     """
     place = _shared_place(config)
@@ -46,9 +46,9 @@ def run_once(config: pytest.Config, node: str, start: Any) -> Ran:
     with _locked(folder / "lock") as held:
         if (folder / _OUTCOME).is_file():
             return _stored(json.loads((folder / _OUTCOME).read_text("utf-8")))
-        if (folder / _BEGUN).exists():
+        if (folder / _STARTED).exists():
             raise CutOffError("the run was cut off when its worker ended; a plan is run once in a session")
-        (folder / _BEGUN).touch()
+        (folder / _STARTED).touch()
         return _kept(folder, start, (held,))
 
 

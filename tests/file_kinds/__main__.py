@@ -15,7 +15,7 @@ from tests.file_kinds.cases import LOGS, TABLES, Case
 PAGE = Path(__file__).parents[2] / "docs/reference/file-kinds.md"
 _HEAD = """# Kinds of files
 
-What is read, what is said and what is refused, of small files as other tools write them. Made by
+What is read, reported and refused of small files as other tools write them. Made by
 `python -m tests.file_kinds --write`, which reads each; a test holds that the page is what it gives.
 [Recordings of other tools](../how-to/other-tools.md) explains `--columns`, [replay](../how-to/replay.md)
 logs.
@@ -31,9 +31,9 @@ def page() -> str:
     not_read = [f"| `{ending}` | {what} | {fix} |" for ending, (what, fix) in sorted(NOT_READ.items())]
     parts = [
         f"## Recordings\n\nRead are {_listed(READ)}.\n",
-        *_table("| file | is | becomes | said |", tables),
+        *_table("| file | is | becomes | reported |", tables),
         f"\n## Logs of frames\n\nRead are {_listed(can_logs.READ)}.\n",
-        *_table("| file | is | becomes | said |", logs),
+        *_table("| file | is | becomes | reported |", logs),
         "\n## Not read\n\nNamed with what would read it.\n",
         *_table("| file | is | what reads it |", not_read),
     ]
@@ -52,11 +52,11 @@ def _row(case: Case, folder: Path) -> str:
     path = folder / case.name
     case.make(path)
     try:
-        becomes, said = _logged(path) if case.is_log else _read(path, case.columns)
+        becomes, reported = _logged(path) if case.is_log else _read(path, case.columns)
     except HilError as error:
         becomes = "refused"
-        said = [line.strip() for line in str(error).splitlines()]
-    words = "<br>".join(one.replace(f"{folder}/", "").replace("|", "\\|") for one in said)
+        reported = [line.strip() for line in str(error).splitlines()]
+    words = "<br>".join(one.replace(f"{folder}/", "").replace("|", "\\|") for one in reported)
     options = "".join(f"<br>`--columns '{option}'`" for option in case.columns)
     return f"| `{case.name}` | {case.what}{options} | {becomes} | {words} |"
 

@@ -1,4 +1,4 @@
-"""Small files as other tools write them: one case for each thing that is said or refused."""
+"""Small files as other tools write them: one case for each thing that is reported or refused."""
 
 from __future__ import annotations
 
@@ -80,11 +80,11 @@ def tdms(path: Path) -> None:
     from nptdms import ChannelObject, TdmsWriter
 
     with TdmsWriter(path) as writer:
-        said = {"wf_increment": 1e-3}
+        reported = {"wf_increment": 1e-3}
         writer.write_segment(
             [
-                ChannelObject("run", "T_req", TORQUE, properties={**said, "unit_string": "Nm"}),
-                ChannelObject("run", "n_EM", RPM, properties={**said, "unit_string": "rpm"}),
+                ChannelObject("run", "T_req", TORQUE, properties={**reported, "unit_string": "Nm"}),
+                ChannelObject("run", "n_EM", RPM, properties={**reported, "unit_string": "rpm"}),
             ]
         )
 

@@ -21,7 +21,7 @@ steps:
 criteria:
   - {segment: s, metric: peak_shaft_torque, upper: 1, unit: N m}
 """
-#: Fails if a run that was begun in the same folder is still there.
+#: Fails if a run that was started in the same folder is still there.
 FIRST_AND_SECOND = """
 import subprocess
 def test_first(bench):
@@ -52,12 +52,12 @@ def alive(folder: Path) -> list[str]:
     return [line for line in lines if str(folder / "out") in line]
 
 
-def begun(folder: Path) -> list[str]:
+def started(folder: Path) -> list[str]:
     """Runs that have a recording."""
     return sorted(str(path.parent.relative_to(folder / "out")) for path in folder.rglob("recording.mcap"))
 
 
-def test_a_timeout_by_signal_ends_the_run_and_the_plan_is_not_begun_again(tmp_path: Path) -> None:
+def test_a_timeout_by_signal_ends_the_run_and_the_plan_is_not_started_again(tmp_path: Path) -> None:
     (tmp_path / "plan.yaml").write_text(LONG)
     done = session(tmp_path, "--timeout", "8", "--timeout-method", "signal")
     assert alive(tmp_path) == []
@@ -65,7 +65,7 @@ def test_a_timeout_by_signal_ends_the_run_and_the_plan_is_not_begun_again(tmp_pa
     assert "1 failed, 1 skipped" in done.stdout
     assert "Timeout" in done.stdout
     assert "the run was cut off" in done.stdout
-    assert begun(tmp_path) == ["plan_yaml-001"]
+    assert started(tmp_path) == ["plan_yaml-001"]
     assert (
         json.loads((tmp_path / "out/plan_yaml-001/result.json").read_text())["safe_state"] != "not_confirmed"
     )
@@ -77,7 +77,7 @@ def test_the_next_test_begins_when_the_run_of_the_last_has_ended(tmp_path: Path)
     (tmp_path / "test_own.py").write_text(FIRST_AND_SECOND)
     done = session(tmp_path, "--timeout", "12", "--timeout-method", "signal")
     assert "1 failed, 1 passed" in done.stdout, done.stdout + done.stderr
-    assert begun(tmp_path) == ["test_own_py__test_first/long-001", "test_own_py__test_second/short-001"]
+    assert started(tmp_path) == ["test_own_py__test_first/long-001", "test_own_py__test_second/short-001"]
 
 
 def test_a_timeout_by_thread_ends_pytest_and_the_run_ends_by_itself(tmp_path: Path) -> None:
@@ -90,7 +90,7 @@ def test_a_timeout_by_thread_ends_pytest_and_the_run_ends_by_itself(tmp_path: Pa
             break
         time.sleep(0.1)
     assert alive(tmp_path) == []
-    assert len(begun(tmp_path)) == 1
+    assert len(started(tmp_path)) == 1
 
 
 def test_ctrl_c_waits_until_the_bench_is_safe(tmp_path: Path) -> None:
@@ -110,9 +110,9 @@ def test_ctrl_c_waits_until_the_bench_is_safe(tmp_path: Path) -> None:
     while not list(tmp_path.rglob("recording.mcap")) and process.poll() is None:
         time.sleep(0.05)
     os.kill(process.pid, signal.SIGINT)
-    said, _ = process.communicate(timeout=120)
-    assert process.returncode == 2, said
-    assert list(tmp_path.rglob("result.json")), said
+    reported, _ = process.communicate(timeout=120)
+    assert process.returncode == 2, reported
+    assert list(tmp_path.rglob("result.json")), reported
 
 
 def test_reruns_repeat_the_judgement_and_not_the_run(tmp_path: Path) -> None:
@@ -120,7 +120,7 @@ def test_reruns_repeat_the_judgement_and_not_the_run(tmp_path: Path) -> None:
     (tmp_path / "plan.yaml").write_text(SHORT)
     done = session(tmp_path, "--reruns", "2")
     assert "1 failed, 2 passed, 2 rerun" in done.stdout, done.stdout + done.stderr
-    assert begun(tmp_path) == ["plan_yaml-001"]
+    assert started(tmp_path) == ["plan_yaml-001"]
 
 
 @pytest.mark.parametrize("mode", ["load", "each", "loadscope", "worksteal"])
@@ -129,7 +129,7 @@ def test_workers_of_xdist_share_the_run_of_a_plan(mode: str, tmp_path: Path) -> 
     done = session(tmp_path, "-n", "2", "--dist", mode)
     counts = "2 failed, 4 passed" if mode == "each" else "1 failed, 2 passed"
     assert counts in done.stdout, done.stdout + done.stderr
-    assert begun(tmp_path) == ["plan_yaml-001"]
+    assert started(tmp_path) == ["plan_yaml-001"]
 
 
 def test_a_worker_that_is_killed_does_not_begin_its_plan_again(tmp_path: Path) -> None:
@@ -137,5 +137,5 @@ def test_a_worker_that_is_killed_does_not_begin_its_plan_again(tmp_path: Path) -
     done = session(tmp_path, "-n", "1", "--timeout", "12", "--timeout-method", "thread")
     assert "crashed" in done.stdout, done.stdout + done.stderr
     assert "cut off when its worker ended" in done.stdout
-    assert begun(tmp_path) == ["plan_yaml-001"]
+    assert started(tmp_path) == ["plan_yaml-001"]
     assert alive(tmp_path) == []

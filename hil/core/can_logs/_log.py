@@ -24,9 +24,9 @@ LONGEST_DATA = 8
 #: What stamps mean where a file leaves it open: it is not stated; what goes back was recorded later, or was
 #: written out of order; those of an ASC's trigger blocks count from the log's begin, or from the block's.
 Stamps = Literal["", "append", "sort", "log", "block"]
-_UNREMARKABLE_S = 10.0  # that frames were sorted which stand so close need not be said
+_UNREMARKABLE_S = 10.0  # that frames were sorted which stand so close need not be reported
 _LATE_S = 0.1  # by which a frame may stand behind newer ones
-_PAUSE_S, _ANOTHER_CLOCK_S = 60.0, 86_400.0  # that a log skips: is said, is refused
+_PAUSE_S, _ANOTHER_CLOCK_S = 60.0, 86_400.0  # that a log skips: is reported, is refused
 
 
 class LogClock:

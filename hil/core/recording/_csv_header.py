@@ -285,11 +285,11 @@ def _name_time(
         Layout([], found.separator).cells(line) for line in lines[header + 1 : header + 2 + MOST_BETWEEN]
     ]
     above = [Layout([], found.separator).cells(line) for line in lines[max(0, header - UNITS_ABOVE) : header]]
-    said = [row[number] for row in (*below, *above) if len(row) > number]
-    stamped = any(is_stamp(cell) for cell in said)
-    in_a_row = any(plain_unit(cell) in PER_SECOND for cell in said)
-    name, _, beside = _name_and_unit(cells[number])
-    if name == TIME or stamped or in_a_row or beside:
+    beside = [row[number] for row in (*below, *above) if len(row) > number]
+    stamped = any(is_stamp(cell) for cell in beside)
+    in_a_row = any(plain_unit(cell) in PER_SECOND for cell in beside)
+    name, _, unit = _name_and_unit(cells[number])
+    if name == TIME or stamped or in_a_row or unit:
         if cells[number].lower() == "time":
             return
         found.notes.append(f"'{cells[number]}' was taken to be the time")

@@ -21,6 +21,7 @@ from hil.core.recording._table import BLOCK, Array, Recording, refuse_too_large
 from hil.core.recording.mdf_file import open_mdf
 
 _EVENT_TICKS = 1_000_000  # in a second
+_BEGINS = (b"MDF", b"UnFinMF")  # finished, and not
 _MASTERS = (2, 3)  # channel types of the standard: time stamps, stored or counted
 
 
@@ -31,6 +32,7 @@ def read_mdf(path: Path, columns: ColumnMap = AS_NAMED) -> Recording:
         BadInputError: no MDF file or a broken one, or a known channel that is no column of numbers.
     """
     refuse_unless_regular(path)
+    _refuse_other(path)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -45,6 +47,13 @@ def read_mdf(path: Path, columns: ColumnMap = AS_NAMED) -> Recording:
         raise
     except Exception as error:  # of many kinds, for whatever is broken
         raise BadInputError("not an MDF file, or a broken one", where=str(path)) from error
+
+
+def _refuse_other(path: Path) -> None:
+    """Refuse what does not begin as MDF: asammdf would leave it open."""
+    with path.open("rb") as file:
+        if not file.read(8).startswith(_BEGINS):
+            raise BadInputError("not an MDF file, or a broken one", where=str(path))
 
 
 class _Groups:

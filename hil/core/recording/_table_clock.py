@@ -21,7 +21,7 @@ _BAND = 1.3  # of a quantum: residuals of stamps that are rounded, about a line 
 def counted_on(stamps: Array, notes: list[str]) -> Array:
     """Stamps of a counter of 16 or 32 bits as one that goes on, in its own numbers; others as they are.
 
-    A counter is told by whole numbers, none of them beyond its range, that go on where they begin again.
+    A counter is known by whole numbers, none of them beyond its range, that go on where they begin again.
     """
     steps = np.diff(stamps)
     back = steps < 0

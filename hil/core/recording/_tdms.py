@@ -30,7 +30,7 @@ def read_tdms(path: Path, columns: ColumnMap = AS_NAMED) -> Recording:
 
     notes: list[str] = []
     try:
-        logging.getLogger("nptdms").setLevel(logging.CRITICAL + 1)  # what matters of a file is said here
+        logging.getLogger("nptdms").setLevel(logging.CRITICAL + 1)  # what matters of a file is stated here
         with path.open("rb") as opened, TdmsFile.open(opened) as file:
             channels = [channel for group in file.groups() for channel in group.channels()]
             refuse_too_large(max(map(len, channels), default=0), len(channels), str(path))

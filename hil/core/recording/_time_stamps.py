@@ -28,7 +28,7 @@ class TimeStamps:
     """Reads a column of such stamps, block by block, as seconds since the first.
 
     A time of day that goes back by more than half a day has passed midnight. Of dates with slashes of which
-    no part is above 12, month and day cannot be told apart: that matters only where the date changes.
+    no part is above 12, month and day cannot be distinguished: that matters only where the date changes.
     """
 
     first_day: int | None = None

@@ -36,7 +36,7 @@ TWO = [0.1, 0.2, 10.1, 10.2]
 
 
 @pytest.mark.parametrize(
-    ("blocks", "expected", "said"),
+    ("blocks", "expected", "reported"),
     [
         (block("21:51", 0.1, 0.2) + block("22:01", 10.1, 10.2), TWO, FROM_LOG),
         (block("21:51", 0.1, 0.2) + block("22:01", 0.1, 0.2), TWO, FROM_BLOCK),
@@ -51,11 +51,11 @@ TWO = [0.1, 0.2, 10.1, 10.2]
     ],
 )
 def test_stamps_of_trigger_blocks_lie_where_their_dates_put_them(
-    blocks: str, expected: list[float], said: str, tmp_path: Path
+    blocks: str, expected: list[float], reported: str, tmp_path: Path
 ) -> None:
     log = read(tmp_path, HEAD + blocks)
     assert since_head_s(log) == pytest.approx(expected, abs=1e-5)
-    assert any(said in remark for remark in log.remarks) if said else log.remarks == []
+    assert any(reported in remark for remark in log.remarks) if reported else log.remarks == []
 
 
 def test_trigger_blocks_that_fit_both_ways_or_neither_are_refused_with_the_option(tmp_path: Path) -> None:
@@ -129,8 +129,8 @@ def test_busmasters_own_log(mode: str, clock: str, stamps: list[str], tmp_path: 
 
 def test_a_log_that_skips_says_so_and_one_whose_clock_was_set_is_refused(tmp_path: Path) -> None:
     pause = "(1700000000.0) can0 123#01\n(1700000300.0) can0 123#02\n"
-    said = read(tmp_path, pause, name="a.log").remarks
-    assert said == ["its stamps skip 300 s at frame 2: no frame lies between"]
+    reported = read(tmp_path, pause, name="a.log").remarks
+    assert reported == ["its stamps skip 300 s at frame 2: no frame lies between"]
     stamps = ("12.0", "12.1", "1700000300.0", "1700000300.1")
     clock_set = "".join(f"({stamp}) can0 123#01\n" for stamp in stamps)
     with pytest.raises(BadInputError, match="a clock is set") as caught:

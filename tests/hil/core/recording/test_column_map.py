@@ -1,4 +1,4 @@
-"""Columns of other tools as channels: what a map says is done, said and kept; what it cannot mean refused."""
+"""Columns of other tools as channels: what a map says is done, reported and kept; what it cannot mean refused."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def test_a_file_says_the_same_as_options(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("option", "said"),
+    ("option", "reported"),
     [
         ("motor_speed_rads=n", "'motor_speed_rads' is no channel"),
         ("motor_speed_rads=n", "did you mean 'motor_speed_rad_s'"),
@@ -125,10 +125,10 @@ def test_a_file_says_the_same_as_options(tmp_path: Path) -> None:
         ("motor_speed_rad_s=n, missing=x", "missing is 'x'"),
     ],
 )
-def test_an_option_that_means_nothing_is_refused(option: str, said: str) -> None:
+def test_an_option_that_means_nothing_is_refused(option: str, reported: str) -> None:
     with pytest.raises(BadInputError) as caught:
         column_map([option])
-    assert said in str(caught.value)
+    assert reported in str(caught.value)
 
 
 def test_all_mistakes_of_a_file_are_named_with_their_lines(tmp_path: Path) -> None:

@@ -95,8 +95,8 @@ def tdms_of(path: Path, *channels: tuple[str, str, np.ndarray, dict[str, Any]]) 
     with nptdms.TdmsWriter(path) as writer:
         writer.write_segment(
             [
-                nptdms.ChannelObject(group, name, values, properties=said)
-                for group, name, values, said in channels
+                nptdms.ChannelObject(group, name, values, properties=reported)
+                for group, name, values, reported in channels
             ]
         )
     return path

@@ -1,4 +1,4 @@
-"""Text of ControlDesk, LabVIEW, INCA, PUMA, built from descriptions: values right, assumptions said."""
+"""Text of ControlDesk, LabVIEW, INCA, PUMA, built from descriptions: values right, assumptions reported."""
 
 from __future__ import annotations
 
@@ -238,7 +238,7 @@ def test_columns_of_a_file_without_a_map_are_listed_with_the_option(tmp_path: Pa
 
 
 @pytest.mark.parametrize(
-    ("name", "content", "said"),
+    ("name", "content", "reported"),
     [
         ("r.xlsx", b"PK\x03\x04", "is a spreadsheet"),
         ("r.csv", b"PK\x03\x04....", "is no .csv file but a spreadsheet"),
@@ -249,9 +249,9 @@ def test_columns_of_a_file_without_a_map_are_listed_with_the_option(tmp_path: Pa
     ],
 )
 def test_what_is_not_read_is_named_with_what_reads_it(
-    name: str, content: bytes, said: str, tmp_path: Path
+    name: str, content: bytes, reported: str, tmp_path: Path
 ) -> None:
     (tmp_path / name).write_bytes(content)
     with pytest.raises(BadInputError) as caught:
         read_recording(tmp_path / name)
-    assert said in str(caught.value)
+    assert reported in str(caught.value)
