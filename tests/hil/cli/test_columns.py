@@ -71,7 +71,7 @@ def test_export_simulate_and_report_take_the_same_map(folder: Path, capsys) -> N
     speed = exported["read"]["log.txt"]["columns"]["motor_speed_rad_s"]
     assert (speed["column"], speed["unit"], speed["sign"]) == ("n_EM", "rpm", -1)
     own = read_recording(folder / "own.csv")
-    simulated = told(
+    simulated = printed_json(
         capsys, "simulate", "--model", str(model()), "--input", "log.txt", *given, "--out", "sim.csv"
     )
     assert simulated["read"] == exported["read"]

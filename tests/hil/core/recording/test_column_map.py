@@ -1,4 +1,4 @@
-"""Columns of other tools as channels: what a map says is done, reported and kept; what it cannot mean refused."""
+"""Columns of other tools as channels: what a map states is done, reported and kept."""
 
 from __future__ import annotations
 

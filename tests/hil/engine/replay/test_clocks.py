@@ -1,4 +1,4 @@
-"""Clocks of several logs: gaps are said, another time zone and a bus recorded twice are refused."""
+"""Clocks of several logs: gaps are reported, another time zone and a bus recorded twice are refused."""
 
 from __future__ import annotations
 
