@@ -78,7 +78,7 @@ _FUNCTIONS = "Coefficients of s, the highest power first; one denominator and on
 def _method(summary: Mapping[str, Any]) -> str:
     response = summary["frequency_response"]
     low, high = (quantities.number(response[key], significant=3) for key in ("from_hz", "to_hz"))
-    holds = {e["input_hold_s"] for e in summary["experiments"]}
+    holds = {round(e["input_hold_s"], 6) for e in summary["experiments"]}  # sample times differ by rounding
     hold = " and ".join(quantities.quantity(h * 1e3, "ms", significant=3) for h in sorted(holds))
     return (
         f"{response['points']} frequencies from {low} to {high} Hz by the {response['method']} method. "

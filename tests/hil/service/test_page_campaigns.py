@@ -46,7 +46,7 @@ def test_a_campaign_is_begun_watched_cancelled_and_gone_on_with(
     expect(page.locator("#campaign-text")).to_have_value(re.compile(r"name: short_campaign"))
     page.get_by_label("Files of plan, model and controllers").set_input_files(tmp_path / "short.yaml")
     page.get_by_role("button", name="Simulate").click()
-    expect(page.locator("#campaign-told")).to_contain_text("16 simulations")
+    expect(page.locator("#campaign-message")).to_contain_text("16 simulations")
     page.locator("#campaign-text").fill(LONG)
     page.get_by_role("button", name="Simulate").click()
     rows = page.locator("#campaign-list tbody tr")

@@ -53,7 +53,7 @@ def test_what_is_moved_is_followed_saved_and_run(
     expect(page.locator("#design-stable")).to_have_text("stable")
     page.locator("#design-name").fill("softer")
     page.get_by_role("button", name="Save the controller").click()
-    expect(page.locator("#design-told")).to_contain_text("Saved as softer")
+    expect(page.locator("#design-message")).to_contain_text("Saved as softer")
     with page.expect_download() as download:
         page.get_by_role("button", name="Download controller.toml").click()
     download.value.save_as(tmp_path / "controller.toml")

@@ -86,7 +86,7 @@ def test_map_name_and_shrink_are_shown_and_the_separating_test_is_run(
     expect(page.locator("#diagnose-gaps")).to_contain_text("12 %1.1 %1 %")
     refuse_hard_to_use(page)
     page.get_by_role("button", name="Run the separating test for coulomb friction").click()
-    expect(page.locator("#diagnose-told")).to_contain_text("is queued: To tell friction from backlash")
+    expect(page.locator("#diagnose-message")).to_contain_text("is queued: To tell friction from backlash")
     expect(page.locator("#results tbody tr").first).to_contain_text("To tell friction from backlash")
 
 
@@ -102,7 +102,7 @@ def test_a_model_is_identified_from_a_run_and_saved(page: playwright.Page, there
     assert "gain" in roles_drawn(page, "fit-coherence", ("gain",))
     page.locator("#identify-name").fill("found")
     page.get_by_role("button", name="Save the model").click()
-    expect(page.locator("#identify-told")).to_contain_text("Saved as found")
+    expect(page.locator("#identify-message")).to_contain_text("Saved as found")
     refuse_hard_to_use(page)
     page.once("dialog", lambda dialog: dialog.accept())
     page.locator("#identify-remove").click()

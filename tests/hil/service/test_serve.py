@@ -57,9 +57,9 @@ def test_what_a_run_asked_is_shown_until_somebody_answers(service: Served) -> No
     goes_on = "'Is the cage shut?'}\n  - hold_speed: {speed_km_h: 0, duration_s: 3000}"
     service.give("going-on", ASKING.replace("'Is the cage shut?'}", goes_on).replace("asking", "going-on"))
     run = service.queue("going-on")
-    service.until(run, lambda found: "cage" in found["told"])
+    service.until(run, lambda found: "cage" in found["message"])
     service.post(f"/runs/{run}/answer", {"text": "yes"})
-    service.until(run, lambda found: found["state"] == "running" and not found["told"])
+    service.until(run, lambda found: found["state"] == "running" and not found["message"])
     service.post(f"/runs/{run}/abort")
     assert service.over(run)["exit_code"] == 130
 
