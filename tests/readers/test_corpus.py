@@ -32,7 +32,7 @@ _DATES = re.compile(r"^(?:date|begin triggerblock)\s+\w+\s+(.+?)\s*$", re.IGNORE
 def fetched(source: Callable[[], Path]) -> Path:
     """A source package.
 
-    Skips the test where no index can be reached, with what was said.
+    Skips the test where no index can be reached, with what was stated.
     """
     try:
         return source()
