@@ -36,7 +36,7 @@ from tests.blind.specs import Spec, full_set
 from tests.hil.analysis.missing_effects.turning_mass import base, recording
 
 _SURE = 0.9
-#: Counted in the blind set alone: other bases have wrong numbers on purpose, and a drive's readings are rounded.
+#: Counted in the blind set alone: other bases have wrong numbers on purpose, a drive's readings are rounded.
 _ASIDE = ("parameter_mismatch", "sensor_quantization")
 #: A number of the base that is an effect by another name: either is right.
 _SAME = {

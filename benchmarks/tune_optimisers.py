@@ -169,7 +169,7 @@ def _shortened(folder: Path) -> Path:
 def outcome(name: str, seed: int, runs: int) -> list[float]:
     """Best score of one optimiser with one seed so far, after each run."""
     with tempfile.TemporaryDirectory() as folder:
-        trial = acceptance_trial(plan=_shortened(Path(folder)))
+        trial = acceptance_trial(plan=_shortened(Path(folder)), keeping=False)
     cost = Budget(trial, runs)
     with contextlib.suppress(_SpentError):
         OPTIMISERS[name](cost, np.random.default_rng(seed), runs)

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.answers import refuse_no_numbers
-from hil.analysis.tuning import Pool, SpeedLoops, Trial, channels_needed, draws_of, driven_by, read_free
+from hil.analysis.tuning import KEPT, Pool, SpeedLoops, Trial, channels_needed, draws_of, driven_by, read_free
 from hil.core.controller import load_controller
 from hil.core.model import load_model
 from hil.engine import RunRequest, load_bench, run_plan
@@ -21,9 +21,11 @@ from test_plans import load_plan
 EVALUATIONS = 2000
 
 
-def acceptance_trial(draws: int = 0, plan: str | Path = "acceptance") -> Trial:
-    """The acceptance plan on the default bench."""
+def acceptance_trial(draws: int = 0, plan: str | Path = "acceptance", *, keeping: bool = True) -> Trial:
+    """The acceptance plan on the default bench; `keeping`: with what may not get worse than the start."""
     loaded, bench, free = load_plan(plan), load_bench("sim"), read_free(None)
+    if not keeping:
+        free = free.model_copy(update={"keep": free.keep.model_copy(update={"may_worsen": KEPT})})
     assert bench.simulation is not None
     driven = driven_by(loaded)
     start = load_controller(driven.file)

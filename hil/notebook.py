@@ -6,6 +6,7 @@ restarted leaves the bench as safe as a terminal would. The rest is computed her
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -28,7 +29,19 @@ from hil.core.result import RunResult
 
 __all__ = ["Run", "design", "diagnose", "frame", "identify", "load_model", "read", "recording_of", "run"]
 
-_COMMAND = (sys.executable, "-c", "from hil.cli import main; main()")
+#: Where the system can, it interrupts the command when the process that called it is killed.
+_PARENT = "HIL_CALLED_BY"
+_UNTIL_PARENT_ENDS = f"""
+import ctypes, os, signal
+try:
+    ctypes.CDLL(None).prctl(1, signal.SIGINT)  # PR_SET_PDEATHSIG
+except (AttributeError, OSError, TypeError):
+    pass  # not Linux
+else:
+    if os.environ.get("{_PARENT}", "") != str(os.getppid()):
+        raise SystemExit(130)
+"""
+_COMMAND = (sys.executable, "-c", _UNTIL_PARENT_ENDS + "from hil.cli import main; main()")
 _CODES: tuple[type[HilError], ...] = (BadInputError, BenchError, InterruptError)
 
 
@@ -52,6 +65,7 @@ def run(
     *,
     variables: dict[str, float] | None = None,
     options: Sequence[str] = (),
+    held: Sequence[int] = (),
 ) -> Run:
     """Execute a plan, as `hil run` does, and write its reports.
 
@@ -61,11 +75,13 @@ def run(
         out: new folder for recording and reports.
         variables: values of the plan's variables, in their units.
         options: further options of `hil run`, such as `--model FILE` or `--confirm NAME`.
+        held: descriptors that the command keeps open until the bench is safe, such as of a lock.
 
     Raises:
         BadInputError: plan, bench or place cannot be used; nothing was moved.
         BenchError: the bench failed; what was measured until then stands in the folder.
         InterruptError: the kernel was interrupted; the bench was left safe first.
+        BaseException: what a timer or a signal raised meanwhile; likewise.
     """
     chosen = [word for name, value in (variables or {}).items() for word in ("--set", f"{name}={value!r}")]
     arguments = [
@@ -80,7 +96,13 @@ def run(
         "--json",
     ]
     process = subprocess.Popen(
-        arguments, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        arguments,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        pass_fds=tuple(held),
+        env={**os.environ, _PARENT: str(os.getpid())},
     )
     output, complaint = _until_safe(process)
     failure = next((kind for kind in _CODES if kind.exit_code == process.returncode), None)
@@ -166,9 +188,21 @@ def _explainable(model: Model, recording: Recording) -> list[Recording]:
 
 
 def _until_safe(process: subprocess.Popen[str]) -> tuple[str, str]:
-    """What the command says; an interrupt is passed on, and it is waited until the bench is safe."""
+    """What the command says. An interrupt is passed on; whatever else is raised here interrupts it too.
+
+    Raises:
+        BaseException: what was raised here, such as by a timer of a test, when the bench is safe.
+    """
+    raised: BaseException | None = None
     while True:
         try:
-            return process.communicate()
+            output = process.communicate()
         except KeyboardInterrupt:
             process.send_signal(signal.SIGINT)
+        except BaseException as error:
+            raised = raised or error
+            process.send_signal(signal.SIGINT)
+        else:
+            if raised is not None:
+                raise raised
+            return output

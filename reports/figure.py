@@ -37,7 +37,7 @@ class Trace:
 
 @dataclass(frozen=True)
 class Band:
-    """A shaded stretch of the x axis with its label at the top."""
+    """A shaded stretch of the x axis with its label at the top; '' for none."""
 
     start: float
     end: float

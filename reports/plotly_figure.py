@@ -160,6 +160,7 @@ def _bands(figure: Figure) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
             "yanchor": "top",
         }
         for band in figure.bands
+        if band.label
     ]
     return shapes, annotations
 

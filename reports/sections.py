@@ -8,6 +8,7 @@ from dataclasses import replace
 from hil.core.recording import Recording
 from hil.core.result import RunResult, Segment
 from reports.channel_figures import channels_section, further_section, overview_section, sweep_section
+from reports.drive_figures import drive_section
 from reports.figure import Section
 from reports.step_figures import step_section
 from reports.stretch import thinned
@@ -23,7 +24,8 @@ def sections(recording: Recording, result: RunResult | None) -> list[Section]:
     for segment in result.segments:
         if segment.kind == "step":
             steps.setdefault(segment.initial_speed_km_h, []).append(segment)
-    found = [step_section(recording, group, criteria) for group in steps.values()]
+    found = [section for section in [drive_section(recording, result.segments, criteria)] if section]
+    found += [step_section(recording, group, criteria) for group in steps.values()]
     found += [sweep_section(recording, s) for s in result.segments if s.kind != "step"]
     of_all = [section(recording, whole, result.segments) for section in (overview_section, further_section)]
     found += [section for section in of_all if section]

@@ -133,6 +133,8 @@ def _mark(axes: Axes, figure: Figure) -> None:
     ink, band_colour = style.SURFACE["quiet"].light, style.SURFACE["band"].light
     for band in figure.bands:
         axes.axvspan(band.start, band.end, color=band_colour, linewidth=0, zorder=0)
+        if not band.label:
+            continue
         axes.text(
             (band.start * band.end) ** 0.5 if figure.logarithmic_x else (band.start + band.end) / 2,
             0.985,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hil.analysis.comparison import ComparedRun
-from hil.analysis.tuning import PARAMETERS, Confirmation, Standing, Tuning, values_of
+from hil.analysis.tuning import PARAMETERS, Confirmation, Standing, Tuning, values_of, within_hard_limits
 from hil.core.recording import Recording
 from hil.core.result import RunResult, Segment
 from reports import quantities
@@ -16,7 +16,7 @@ from reports.figure import Level
 from reports.front_figures import front_figures
 from reports.labels import Label, criterion_title
 from reports.origin import Origin
-from reports.outputs.tuning import verdict
+from reports.outputs.tuning import verdict, worse_in_words
 from reports.overlay_figures import overlay
 from reports.parts import Cell, Map, Page, Part, Table
 from test_plans.criteria import Criterion
@@ -60,7 +60,11 @@ def tuning_page(
         tone="pass" if worst.worst >= 0 else "fail",
         lead=_in_titles(verdict(found), found),
         notes=tuple(notes),
-        parts=(*_confirmed(confirmed), *_parts(found, runs, origin)),
+        parts=(
+            Part("kept", "Compared with the start", _kept_text(found), (_kept(found),)),
+            *_confirmed(confirmed),
+            *_parts(found, runs, origin),
+        ),
         mark=origin.mark,
         first=_first(found, runs),
     )
@@ -121,7 +125,8 @@ def _parts(found: Tuning, runs: Sequence[Shown], origin: Origin) -> list[Part]:
     if drawn:
         words = (
             "Largest values over the driven segments, nominal model, of every candidate within the hard "
-            "limits. Pareto front: candidates that no other beats in all three figures."
+            "limits, also of those that are slower than is allowed. Pareto front: candidates that no other "
+            "beats in peak, band energy and response time at once."
         )
         parts.append(Part("front", "Trade-off", words, figures=drawn))
     if found.sensitivities:
@@ -206,7 +211,7 @@ def _margins(found: Tuning) -> Table:
 
 
 def _worst(one: Standing, found: Tuning) -> str:
-    if not one.worst.feasible:
+    if not all(within_hard_limits(tried) for tried in one.tried):
         return "none"
     return quantities.share(min(one.least_margin(criterion.id) for criterion in found.trial.driven.criteria))
 
@@ -219,6 +224,50 @@ def _margin(one: Standing, id_: str) -> str:
     return f"{least} ({quantities.share(own)})"
 
 
+def _kept_text(found: Tuning) -> str:
+    first = worse_in_words(found)[0].rstrip(":")
+    held = f" Held by what is kept: {', '.join(found.held_by)}." if found.held_by else ""
+    return f"{first[0].upper()}{first[1:]}.{held}"
+
+
+def _kept(found: Tuning) -> Table:
+    """What must not get worse, what is worse first."""
+    shares = {one.words: one for one in found.worse}
+    known = {kept.words for kept in found.start.nominal.figures}
+    rows = [
+        (
+            -1.0 - one.share,
+            (
+                one.words,
+                quantities.number(one.start),
+                quantities.number(one.value),
+                quantities.unit(one.unit),
+                quantities.share(one.share),
+            ),
+        )
+        for one in found.worse
+        if one.words not in known
+    ]
+    for kept, start in found.start.nominal.figures.items():
+        value = found.chosen.nominal.figures.get(kept, float("nan"))
+        worst = shares.get(kept.words)
+        rows.append(
+            (
+                -(worst.share if worst else 0.0),
+                (
+                    kept.words,
+                    quantities.number(start),
+                    quantities.number(value),
+                    quantities.unit(kept.unit),
+                    quantities.share(worst.share) if worst else "not worse",
+                ),
+            )
+        )
+    rows.sort(key=lambda row: row[0])
+    head = ("figure", "start", "tuned", "unit", "worse by, at most on any vehicle")
+    return Table(head, tuple(row for _, row in rows), 1)
+
+
 def _limits_text(found: Tuning) -> str:
     count = len(found.trial.draws)
     cars = "nominal model" if count == 1 else f"least over the nominal model and {count - 1} sampled vehicles"
@@ -228,7 +277,7 @@ def _limits_text(found: Tuning) -> str:
 def _limits(found: Tuning) -> Table:
     names = tuple(one.name for one in found.shown)
     rows = []
-    for name in found.chosen.nominal.limits:
+    for name in (one for one in found.chosen.nominal.limits if not one.startswith("keep.")):
         cells = (
             quantities.share(min(t.limits.get(name, float("nan")) for t in one.tried)) for one in found.shown
         )

@@ -33,9 +33,10 @@ def ramp(
     return np.concatenate([before, line, after])
 
 
-def stairs(levels: Sequence[float], hold_s: float, sample_time_s: float) -> Array:
-    """Each of `levels` for `hold_s`."""
-    return np.repeat(np.asarray(levels, dtype=float), count(hold_s, sample_time_s))
+def stairs(levels: Sequence[float], times_s: Sequence[float], sample_time_s: float) -> Array:
+    """Each of `levels` for its time."""
+    counts = [count(time_s, sample_time_s) for time_s in times_s]
+    return np.repeat(np.asarray(levels, dtype=float), counts)
 
 
 def chirp(

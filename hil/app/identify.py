@@ -8,11 +8,12 @@ from hil.analysis.frequency_response import Experiment, Method, experiments_of
 from hil.analysis.identification import Identification, identify
 from hil.analysis.plausible import refuse_same_data
 from hil.app.feedback import LOGGED, Feedback, Show, warn_of_damage
+from hil.app.reading import reading_of
 from hil.app.requests import IdentifyRequest
 from hil.app.result_file import Outcome, json_file
 from hil.app.results_folder import refuse_missing, results_in
 from hil.core.errors import BadInputError
-from hil.core.recording import read_recording
+from hil.core.recording import Recording, column_map, read_recording
 from reports import HTML, PDF
 from reports.identification_report import identification_page
 from reports.origin import origin_of
@@ -48,7 +49,8 @@ def identify_recordings(request: IdentifyRequest, feedback: Feedback = LOGGED) -
         summary=SUMMARY,
     ) as place:
         with feedback.progress("identification") as show:
-            experiments = _experiments(request, feedback, show)
+            recordings = _recordings(request, feedback, show)
+            experiments = _experiments(recordings, request)
             found = identify(
                 experiments,
                 from_hz=from_hz,
@@ -61,6 +63,7 @@ def identify_recordings(request: IdentifyRequest, feedback: Feedback = LOGGED) -
             show("figures")
             files = output_files(found)
             summary = summary_of(found, experiments, sorted([*files, HTML, PDF]))
+            summary["read"] = reading_of(recordings)
             title = ", ".join(path.name for path in request.recordings)
             page = identification_page(found, summary, title, origin_of({"recording": request.recordings}))
             files |= documents(page)
@@ -79,13 +82,18 @@ def _method(name: str) -> Method:
     raise BadInputError(f"--method is '{name}'", fix=f"one of: {', '.join(methods)}")
 
 
-def _experiments(request: IdentifyRequest, feedback: Feedback, show: Show) -> list[Experiment]:
+def _recordings(request: IdentifyRequest, feedback: Feedback, show: Show) -> list[Recording]:
     recordings = []
+    columns = column_map(request.columns)
     for path in request.recordings:
         show(f"reading {path.name}")
-        recordings.append(read_recording(path, least_samples=_LEAST_SAMPLES))
+        recordings.append(read_recording(path, least_samples=_LEAST_SAMPLES, columns=columns))
     warn_of_damage(feedback, recordings)
     refuse_same_data(recordings)
+    return recordings
+
+
+def _experiments(recordings: list[Recording], request: IdentifyRequest) -> list[Experiment]:
     return [
         experiment
         for recording in recordings

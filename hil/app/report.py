@@ -5,14 +5,16 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from hil.app.feedback import LOGGED, Feedback, warn_of_damage
+from hil.app.reading import reading_of
 from hil.app.requests import ReportRequest
 from hil.app.result_file import RESULT, write_result
 from hil.app.results_folder import refuse_missing, results_in
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
-from hil.core.recording import read_recording
+from hil.core.recording import column_map, read_recording
 from hil.core.result import RunResult
 from hil.engine import RECORDING
 from reports import HTML, JUNIT, PDF, recording_named_in, write_reports
@@ -21,12 +23,16 @@ from test_plans import rejudged
 
 @dataclass(frozen=True)
 class Renewed:
-    """What was written: names of files in `folder` by kind, and the result of a run that has a plan."""
+    """What was written: names of files in `folder` by kind, and the result of a run that has a plan.
+
+    `read`: what was understood of a recording that another tool made.
+    """
 
     result: RunResult | None
     files: dict[str, str]
     recording: Path
     folder: Path
+    read: dict[str, Any]
 
 
 def renew_report(request: ReportRequest, feedback: Feedback = LOGGED) -> Renewed:
@@ -43,7 +49,8 @@ def renew_report(request: ReportRequest, feedback: Feedback = LOGGED) -> Renewed
     with results_in(folder, names, inputs=[path], overwrite=request.overwrite or renewed) as place:
         with feedback.progress(path.name) as show:
             show("reading")
-            recording = read_recording(path, allow_missing=True, any_replay=True)
+            columns = column_map(request.columns)
+            recording = read_recording(path, allow_missing=True, any_replay=True, columns=columns)
             warn_of_damage(feedback, [recording])
             show("judging")
             result = rejudged(recording)
@@ -53,7 +60,7 @@ def renew_report(request: ReportRequest, feedback: Feedback = LOGGED) -> Renewed
         if result is not None:
             result = write_result(result, recording, {"recording": path.name, **files}, folder)
         place.remove_stale([*files.values(), *([RESULT] if result else [])])
-    return Renewed(result, files, path, folder)
+    return Renewed(result, files, path, folder, reading_of([recording]))
 
 
 def _belongs(folder: Path, recording: str) -> bool:

@@ -37,9 +37,14 @@ class CheckRequest:
 
 @dataclass(frozen=True, kw_only=True)
 class ReportRequest(_Writing):
-    """A report that is wanted; `source` is a run's folder or a recording, `out` by default its folder."""
+    """A report that is wanted; `source` is a run's folder or a recording, `out` by default its folder.
+
+    Attributes:
+        columns: which column of another tool's file is which channel, as options have it.
+    """
 
     source: Path
+    columns: Sequence[str] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,6 +61,7 @@ class IdentifyRequest(_Writing):
     Attributes:
         segments: ids of segments to use; none for every chirp and multisine.
         hold_ms: zero-order hold of the input; None for the sample time, at most 1 ms.
+        columns: which column of another tool's file is which channel, as options have it.
     """
 
     recordings: list[Path]
@@ -67,6 +73,7 @@ class IdentifyRequest(_Writing):
     order: int | None = None
     gear_ratio: float | None = None
     hold_ms: float | None = None
+    columns: Sequence[str] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,6 +99,7 @@ class DiagnoseRequest(_Writing):
         noise: standard deviation of a channel's samples, by channel.
         least: smallest relevant size of an effect, by its id.
         at_most: minutes of processor time of the search.
+        columns: which column of another tool's file is which channel, as options have it.
     """
 
     recordings: list[Path]
@@ -100,6 +108,7 @@ class DiagnoseRequest(_Writing):
     noise: Mapping[str, float] = field(default_factory=dict)
     least: Mapping[str, float] = field(default_factory=dict)
     at_most: float = 10.0
+    columns: Sequence[str] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,6 +143,7 @@ class SearchRequest:
         controller: the plan's name for the controller that is tuned; '' for the last one.
         start: controller file to start from; None for the plan's own.
         draws: cars sampled around the model.
+        may_worsen: what may get worse than with the start (KEPT of hil.analysis.tuning), beside the file's.
     """
 
     plan: str
@@ -144,6 +154,7 @@ class SearchRequest:
     start: Path | None = None
     draws: int = 0
     seed: int = 0
+    may_worsen: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

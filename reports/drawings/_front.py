@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from reports.drawings import _canvas as style
+from reports.front_figures import within_sight
 
 Array = npt.NDArray[np.float64]
 
@@ -30,6 +31,7 @@ def front(
     """
     figure = style.new_figure(22, 10.5)
     panels = figure.subplots(1, 2)
+    near = best[within_sight(best, list(named.values()))]
     for axes, column in zip(panels, (1, 2), strict=True):
         axes.plot(every[:, 0], every[:, column], ".", color=style.GREY, markersize=3, alpha=0.35)
         axes.plot(
@@ -53,7 +55,7 @@ def front(
             )
         axes.set_xlabel(labels[0])
         axes.set_ylabel(labels[column])
-        _zoom(axes, best[:, [0, column]], [[point[0], point[column]] for point in named.values()])
+        _zoom(axes, near[:, [0, column]], [[point[0], point[column]] for point in named.values()])
         style.style_axes(axes)
     handles, names = panels[0].get_legend_handles_labels()
     figure.legend(handles, names, loc="outside lower center", ncols=5, frameon=False, fontsize=8.5)

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
 from hil.analysis.diagnosis import Diagnosis
-from hil.analysis.tuning import Confirmation, RefinedRun
+from hil.analysis.tuning import Confirmation, Kept, RefinedRun, Worse, worse_of
 from hil.core.errors.digits import share
 from reports.quantities import chance
 
@@ -38,6 +38,7 @@ class Closing:
         diagnosis: the newest.
         best: the run with the largest worst margin of those that came out as predicted, else of all.
         best_round: where it was.
+        start_figures: what is kept, of the plan's own controller on the model of that round.
         agrees: whether the confirming run of the round that the best controller is of came out as predicted.
         ended: why there was no other round; '' while it goes on.
     """
@@ -49,6 +50,7 @@ class Closing:
     diagnosis: Diagnosis | None = None
     best: RefinedRun | None = None
     best_round: int = 0
+    start_figures: Mapping[Kept, float] = field(default_factory=dict)
     agrees: bool = False
     ended: str = ""
 
@@ -66,6 +68,11 @@ class Closing:
         )
 
     @property
+    def worse(self) -> tuple[Worse, ...]:
+        """What the best controller is predicted to be worse in than the plan's own, beside the criteria."""
+        return () if self.best is None else worse_of([self.start_figures], [self.best.predicted.figures])
+
+    @property
     def content(self) -> bool:
         """Whether prediction and run agree, and nothing that depends on the controller fails."""
         return self.agrees and self.best is not None and self.best.worst >= 0
@@ -75,6 +82,7 @@ def closing_summary(closing: Closing, files: list[str]) -> dict[str, Any]:
     """The content of `autotune.json`."""
     best, found = closing.best, closing.diagnosis
     return {
+        "worse": [asdict(one) for one in closing.worse],
         **closing.asked,
         "ended": closing.ended,
         "agrees": closing.agrees,
@@ -113,8 +121,10 @@ def closing_verdict(closing: Closing) -> str:
     how = "as predicted" if closing.agrees else "not as predicted"
     names = ", ".join(name.replace(".", " ") for name in closing.traded)
     less = f" Margin decreased for: {names}." if names else ""
+    kept = [f"{one.words} by {share(one.share)}" for one in closing.worse]
+    worse = f"Worse than with the plan's own controller, as predicted: {'; '.join(kept)}. " if kept else ""
     return (
-        f"Worst margin measured {share(best.worst)} (round {closing.best_round}, run {best.number}), "
+        f"{worse}Worst margin measured {share(best.worst)} (round {closing.best_round}, run {best.number}), "
         f"{how}{own}.{less} Ended: {closing.ended or 'not yet'}."
     )
 

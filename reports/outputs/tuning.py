@@ -8,7 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from hil.analysis.tuning import RefinedRun, Standing, Tuning, front_of, metrics_of, point_of, values_of
+from hil.analysis.tuning import (
+    RefinedRun,
+    Standing,
+    Tuning,
+    front_of,
+    metrics_of,
+    point_of,
+    values_of,
+    within_hard_limits,
+)
 from hil.core.controller import Controller, controller_to_toml
 from hil.core.errors.digits import share
 from hil.core.result import Segment
@@ -46,12 +55,12 @@ def _front_picture(found: Tuning) -> dict[str, bytes] | None:
     criteria = found.trial.driven.criteria
     metrics = metrics_of(criteria)
     best = front_of(found.archive, criteria)
-    every = [point for tried in found.archive if tried.feasible and (point := point_of(tried, criteria))]
+    every = [point for one in found.archive if within_hard_limits(one) and (point := point_of(one, criteria))]
     if len(metrics) < 2 or not best:
         return None
     units = {criterion.metric.name: criterion.metric.unit for criterion in criteria}
     first, second = (f"{name.replace('_', ' ')} in {units[name]}" for name in metrics)
-    labels = (first, second, "|S|max")
+    labels = (first, second, "response time in s")
     named = {one.name: point.figures for one in found.shown if (point := point_of(one.nominal, criteria))}
     figure = drawings.front(
         labels, np.array([p.figures for p in every]), np.array([p.figures for p in best]), named
@@ -65,6 +74,8 @@ def summary_of(
     """The content of `tune.json`; `asked` are the options of the command."""
     trial, worst = found.trial, found.chosen.worst
     return {
+        "worse": [asdict(one) for one in found.worse],
+        "held_by": list(found.held_by),
         **asked,
         "in_place_of": trial.driven.file.stem,
         "segments": list(trial.driven.segments),
@@ -98,8 +109,12 @@ def summary_of(
             "limits": trial.free.limits.model_dump(),
             "controllers": {one.name: _hard_limits(one) for one in found.shown},
         },
+        "kept": {
+            **trial.free.keep.model_dump(),
+            "controllers": {one.name: _kept(one) for one in found.shown},
+        },
         "front": {
-            "figures": [*metrics_of(trial.driven.criteria), "sensitivity_peak"],
+            "figures": [*metrics_of(trial.driven.criteria), "response_time"],
             "points": [
                 {"values": dict(p.tried.values), "figures": list(p.figures)}
                 for p in front_of(found.archive, trial.driven.criteria)
@@ -132,6 +147,14 @@ def _hard_limits(one: Standing) -> dict[str, Any]:
     }
 
 
+def _kept(one: Standing) -> dict[str, float | None]:
+    """What must not get worse, on the model itself; a response that never comes has no time."""
+    return {
+        kept.limit.removeprefix("keep."): value if np.isfinite(value) else None
+        for kept, value in one.nominal.figures.items()
+    }
+
+
 def _binding(found: Tuning, segments: tuple[Segment, ...]) -> dict[str, Any]:
     worst = found.chosen.worst
     criterion = next((c for c in found.trial.driven.criteria if c.id == worst.binding), None)
@@ -149,7 +172,7 @@ def text_of(found: Tuning, out: str) -> str:
     width = max(len(c.id) for c in found.trial.driven.criteria)
     names = [one.name for one in found.shown]
     columns = "".join(f"{name:>16}" for name in names)
-    lines = [f"{'margin, least of ' + _cars(found):<{width}}{columns}"]
+    lines = [*worse_in_words(found), "", f"{'margin, least of ' + _cars(found):<{width}}{columns}"]
     for criterion in found.trial.driven.criteria:
         cells = "".join(f"{share(one.least_margin(criterion.id)):>16}" for one in found.shown)
         lines.append(f"{criterion.id:<{width}}{cells}")
@@ -157,6 +180,9 @@ def text_of(found: Tuning, out: str) -> str:
     own = values_of(found.trial.start)
     for name, value in found.chosen.values.items():
         lines.append(f"{name:<22}{value:>12.5g}   (was {own[name]:.5g})")
+    if found.held_by:
+        held = ", ".join(found.held_by)
+        lines += ["", f"Held by what is kept: {held}. More margin may be had with --may-worsen NAME."]
     lines += ["", verdict(found), f"{found.runs} predicted runs, search {found.ended}; written to {out}"]
     return "\n".join(lines)
 
@@ -169,9 +195,31 @@ def verdict(found: Tuning) -> str:
         f"the plan's own controller has {_margin(found.start)} ({before.binding or 'not run'}, "
         f"{_car(before.draw)})."
     )
-    if found.better_in_every_criterion:
-        return f"{text} Margin increased for every criterion."
-    return f"{text} Margin decreased for: {', '.join(found.traded)}."
+    if found.worse:
+        most = found.worst_figure
+        others = f" and {len(found.worse) - 1} more" if len(found.worse) > 1 else ""
+        text = f"Worse than at the start: {most.words} by {share(most.share)}{others}. {text}"
+    if found.traded:
+        return text
+    rest = "" if found.worse else ", and nothing else is worse"
+    return f"{text} Margin increased for every criterion{rest}."
+
+
+def worse_in_words(found: Tuning) -> list[str]:
+    """What is worse than with the start, a line each; and what was allowed."""
+    keep = found.trial.free.keep
+    let_go = f"; let go: {', '.join(keep.may_worsen)}" if keep.may_worsen else ""
+    allowed = f"allowed: {keep.share_percent:g} % of the start's figure{let_go}"
+    if not found.worse:
+        kept = "criteria, response time, steady error, torque effort, stability"
+        return [f"{kept}: none is worse than at the start ({allowed})"]
+    lines = [f"worse than at the start ({allowed}):"]
+    width = max(len(one.words) for one in found.worse)
+    for one in found.worse:
+        car = "" if len(found.trial.draws) == 1 else f", {_car(one.car)}"
+        change = f"{one.start:.4g} to {one.value:.4g} {one.unit}".rstrip()
+        lines.append(f"  {one.words:<{width}}{share(one.share):>8}   {change}{car}")
+    return lines
 
 
 def _margin(one: Standing) -> str:

@@ -9,8 +9,10 @@ from test_plans.metrics._metric import (
     NoValueError,
 )
 from test_plans.metrics._periodogram import energy_within, hann, periodogram
+from test_plans.metrics._transient import transient_end_s
 from test_plans.metrics._window import WindowMetric
 from test_plans.metrics.band_energy import BandEnergy, BandEnergyMotorSpeed
+from test_plans.metrics.jerk import Jerk
 from test_plans.metrics.overshoot import (
     Overshoot,
     OvershootPercent,
@@ -18,15 +20,17 @@ from test_plans.metrics.overshoot import (
     OvershootShaftTorque,
 )
 from test_plans.metrics.peak import Magnitude, Peak, PeakShaftTorque, Trough
+from test_plans.metrics.play import Clunk, Contact, ContactEnergy, PlayCrossings, TimeInPlay, contacts
 from test_plans.metrics.response_time import (
     Arrival,
     ArrivalShaftTorque,
+    Delay,
     Holding,
     ResponseTime,
     ResponseTimeShaftTorque,
 )
-from test_plans.metrics.ride_comfort import RideComfort
-from test_plans.metrics.settling_time import SettlingShaftTorque, SettlingTime
+from test_plans.metrics.ride_comfort import RideComfort, VibrationDose
+from test_plans.metrics.settling_time import Ripple, SettlingShaftTorque, SettlingTime, SettlingToReference
 from test_plans.metrics.stability import (
     StabilityOscillation,
     StabilityTorqueRequest,
@@ -44,6 +48,15 @@ _OWN: tuple[type[Metric], ...] = (
     ArrivalShaftTorque,
     StabilityTorqueRequest,
     RideComfort,
+    VibrationDose,
+    Jerk,
+    TimeInPlay,
+    PlayCrossings,
+    Clunk,
+    ContactEnergy,
+    Delay,
+    SettlingToReference,
+    Ripple,
     Peak,
     Trough,
     Magnitude,
@@ -71,8 +84,13 @@ __all__ = [
     "BandEnergy",
     "BandEnergyMotorSpeed",
     "ChannelName",
+    "Clunk",
+    "Contact",
+    "ContactEnergy",
+    "Delay",
     "DidNotSettleError",
     "Holding",
+    "Jerk",
     "Limits",
     "Magnitude",
     "Metric",
@@ -84,17 +102,24 @@ __all__ = [
     "OvershootShaftTorque",
     "Peak",
     "PeakShaftTorque",
+    "PlayCrossings",
     "ResponseTime",
     "ResponseTimeShaftTorque",
     "RideComfort",
+    "Ripple",
     "SettlingShaftTorque",
     "SettlingTime",
+    "SettlingToReference",
     "StabilityOscillation",
     "StabilityTorqueRequest",
+    "TimeInPlay",
     "Trough",
+    "VibrationDose",
     "WindowMetric",
+    "contacts",
     "energy_within",
     "hann",
     "instability",
     "periodogram",
+    "transient_end_s",
 ]

@@ -19,7 +19,7 @@ from hil.core.result import Segment
 from test_plans.conductor import Array
 from test_plans.metrics._metric import NoValueError
 from test_plans.metrics._periodogram import hann, without_trend
-from test_plans.metrics._window import cut, evenly
+from test_plans.metrics._samples import cut, evenly
 
 _FOLLOWED_S = 2.0  # over which an order's amplitude is taken, where the signal is as long
 _LEAST_TURNS = 2.0  # of an order in that time: slower ones are no ripple that could be followed

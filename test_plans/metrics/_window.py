@@ -1,20 +1,19 @@
-"""Cutting a channel to a window after the step, and refusing what would give a wrong number."""
+"""The window after a step in which a metric looks at one channel."""
 
 from __future__ import annotations
 
-from typing import Self
+from typing import Literal, Self
 
-import numpy as np
 from pydantic import Field, model_validator
 
-from hil.core.channels import CHANNELS, TIME
+from hil.core.channels import CHANNELS
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import Array, PlannedSegment
-from test_plans.metrics._metric import ChannelName, Metric, NoValueError
-
-#: A longer pause between samples could hide a peak. 10 ms is a block of bus time.
-LARGEST_GAP_S = 0.01
+from test_plans.metrics._metric import ChannelName, Metric
+from test_plans.metrics._reference import no_step
+from test_plans.metrics._samples import cut
+from test_plans.metrics._transient import FOLLOWS, transient_end_s, transient_in_words
 
 
 class WindowMetric(Metric):
@@ -25,9 +24,15 @@ class WindowMetric(Metric):
     to_s: float | None = Field(
         default=None, gt=0, description="end of the window, s after the step; default: the segment's end"
     )
+    until: Literal["end", "transient"] = Field(
+        default="end",
+        description="transient: the window ends when the first transient has been over for 0.5 s",
+    )
 
     @model_validator(mode="after")
     def _window_is_forward(self) -> Self:
+        if self.until == "transient" and self.to_s is not None:
+            raise ValueError("to_s and 'until: transient' both end the window: leave one out")
         if self.to_s is not None and self.to_s <= self.from_s:
             raise ValueError(f"to_s = {self.to_s:g} is not after from_s = {self.from_s:g}")
         return self
@@ -42,6 +47,7 @@ class WindowMetric(Metric):
         """The window in words."""
         start = "the step" if self.from_s == 0 else f"{self.from_s:g} s after the step"
         end = "the end of the segment" if self.to_s is None else f"{self.to_s:g} s after the step"
+        end = transient_in_words() if self.until == "transient" else end
         return f"from {start} until {end}"
 
     @property
@@ -55,12 +61,27 @@ class WindowMetric(Metric):
         needed = self.from_s if self.to_s is None else self.to_s
         if needed > length + 1e-9:
             return f"the window reaches to {needed:g} s after the step, the segment to {length:g} s"
+        if self.until == "transient":
+            return no_step(segment)
         return ""
 
-    def bounds_s(self, segment: Segment) -> tuple[float, float]:
-        """Begin and end of the window on the recording's time."""
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """The channel; where the window ends with the transient, also what shows its end."""
+        own = (self.channel,)
+        return own if self.until == "end" else tuple(dict.fromkeys((*own, FOLLOWS["driving_torque"])))
+
+    def bounds_s(self, recording: Recording, segment: Segment) -> tuple[float, float]:
+        """Begin and end of the window on the recording's time.
+
+        Raises:
+            NoValueError: the window is to end with the first transient, and there is none that ends.
+        """
+        start = segment.step_s + self.from_s
+        if self.until == "transient":
+            return start, transient_end_s(recording, segment)
         end = segment.end_s if self.to_s is None else segment.step_s + self.to_s
-        return segment.step_s + self.from_s, end
+        return start, end
 
     def samples(self, recording: Recording, segment: Segment) -> tuple[Array, Array]:
         """Time stamps and values in the window, both ends included.
@@ -68,57 +89,4 @@ class WindowMetric(Metric):
         Raises:
             NoValueError: the segment is too short, or samples are missing.
         """
-        return cut(recording, segment, self.channel, *self.bounds_s(segment))
-
-
-def cut(
-    recording: Recording,
-    segment: Segment,
-    channel: str,
-    start_s: float,
-    end_s: float,
-    *,
-    with_end: bool = True,
-) -> tuple[Array, Array]:
-    """Time stamps and values of `channel` with start_s <= time <= end_s, complete.
-
-    Args:
-        with_end: whether the sample at `end_s` itself belongs to the window.
-
-    Raises:
-        NoValueError: the segment or the recording is too short, or samples are missing or not finite.
-    """
-    if channel not in recording:
-        recording[channel]  # says which there are
-    if recording.samples < 2:
-        raise NoValueError(f"the recording has {recording.samples} samples")
-    spacing = recording.sample_time_s
-    # The last sample of a stretch lies one sample time before its end; half a sample is for jitter.
-    grace = 1.5 * spacing
-    if end_s > segment.end_s + grace:
-        raise NoValueError(
-            f"the segment ends {segment.end_s - segment.step_s:.3g} s after the step, "
-            f"the window needs {end_s - segment.step_s:.3g} s"
-        )
-    if end_s - start_s < spacing:
-        raise NoValueError("the window is empty")
-    last_s = end_s + (0.5 if with_end else -0.5) * spacing
-    first, last = (recording.rows_before(time_s) for time_s in (start_s - 0.5 * spacing, last_s))
-    rows = recording.rows(first, last, (TIME, channel))
-    time, values = rows[TIME], rows[channel]
-    if len(time) < 2 or time[0] > start_s + grace or time[-1] < end_s - grace:
-        raise NoValueError(f"the recording does not cover the window from {start_s:.3f} s to {end_s:.3f} s")
-    missing = int(np.count_nonzero(~np.isfinite(values)))
-    if missing:
-        raise NoValueError(f"{missing} of {len(values)} samples of {channel} are missing in the window")
-    gaps = np.diff(time)
-    widest = int(np.argmax(gaps))
-    if gaps[widest] > max(LARGEST_GAP_S, grace):
-        raise NoValueError(f"the recording has a gap of {gaps[widest]:.3g} s at {time[widest]:.3f} s")
-    return time, values
-
-
-def evenly(time: Array, values: Array) -> tuple[float, Array]:
-    """Sample time in seconds, and the values on an even grid of as many samples (linear interpolation)."""
-    grid = np.linspace(time[0], time[-1], len(time))
-    return float((time[-1] - time[0]) / (len(time) - 1)), np.interp(grid, time, values)
+        return cut(recording, segment, self.channel, *self.bounds_s(recording, segment))

@@ -12,7 +12,8 @@ from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.metrics._metric import ChannelName, NoValueError
 from test_plans.metrics._periodogram import energy_within, periodogram
-from test_plans.metrics._window import WindowMetric, cut
+from test_plans.metrics._samples import cut
+from test_plans.metrics._window import WindowMetric
 
 
 class BandEnergy(WindowMetric):
@@ -47,7 +48,7 @@ class BandEnergy(WindowMetric):
 
     def compute(self, recording: Recording, segment: Segment) -> float:
         """Sum of density times line spacing over the shares of lines in the band (Parseval)."""
-        start_s, end_s = self.bounds_s(segment)
+        start_s, end_s = self.bounds_s(recording, segment)
         time, values = cut(recording, segment, self.channel, start_s, end_s, with_end=False)
         count = round((end_s - start_s) / recording.sample_time_s)
         spacing = (end_s - start_s) / count

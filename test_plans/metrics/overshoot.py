@@ -11,6 +11,7 @@ from hil.core.result import Segment
 from test_plans.conductor import PlannedSegment
 from test_plans.metrics import _reference
 from test_plans.metrics._metric import ChannelName
+from test_plans.metrics._transient import refuse_reversal
 from test_plans.metrics.peak import Extreme, is_downward
 
 
@@ -38,6 +39,7 @@ class Overshoot(Extreme):
 
     def compute(self, recording: Recording, segment: Segment) -> float:
         """The excess in the channel's unit."""
+        refuse_reversal(recording, segment)
         lowest, highest = self.extremes(recording, segment)
         reference = _reference.reference(segment, self.reference)
         return max(0.0, reference - lowest if is_downward(segment) else highest - reference)

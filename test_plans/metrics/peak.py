@@ -10,6 +10,7 @@ from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import PlannedSegment
 from test_plans.metrics._metric import ChannelName, Limits
+from test_plans.metrics._transient import refuse_reversal
 from test_plans.metrics._window import WindowMetric
 
 
@@ -39,6 +40,7 @@ class Peak(Extreme):
 
     def compute(self, recording: Recording, segment: Segment) -> float:
         """The extreme sample."""
+        refuse_reversal(recording, segment)
         lowest, highest = self.extremes(recording, segment)
         return lowest if is_downward(segment) else highest
 
@@ -78,6 +80,7 @@ class Trough(Extreme):
 
     def compute(self, recording: Recording, segment: Segment) -> float:
         """The extreme sample."""
+        refuse_reversal(recording, segment)
         lowest, highest = self.extremes(recording, segment)
         return highest if is_downward(segment) else lowest
 

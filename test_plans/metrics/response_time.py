@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import ClassVar
 
 import numpy as np
@@ -14,9 +15,12 @@ from test_plans.metrics import _reference
 from test_plans.metrics._metric import ChannelName, NotReachedError, NoValueError
 from test_plans.metrics._orders import orders_removed
 from test_plans.metrics._periodogram import hann
-from test_plans.metrics._window import WindowMetric, cut
+from test_plans.metrics._samples import cut
+from test_plans.metrics._transient import refuse_reversal
+from test_plans.metrics._window import WindowMetric
 
 _WHEEL, _MOTOR = "wheel_speed_rad_s", "motor_torque_nm"
+_SETS_IN = 10.0  # %
 _SHORT_MEAN_S = 0.25  # vibration from 8 Hz on has no part in it
 
 
@@ -54,9 +58,8 @@ class ResponseTime(_Following):
 
     def compute(self, recording: Recording, segment: Segment) -> float:
         """Seconds; NotReachedError where the channel does not get there."""
-        size = segment.reference_after - segment.reference_before
-        if size == 0:
-            raise NoValueError("the segment has no step: before and after are the same")
+        size = _signed_size(segment)
+        refuse_reversal(recording, segment)
         time, values = self.samples(recording, segment)
         progress = (values - segment.reference_before) / size
         share = self.share_percent / 100
@@ -71,6 +74,32 @@ class ResponseTime(_Following):
             return max(0.0, float(time[0] - segment.step_s))
         part = (share - progress[first - 1]) / (progress[first] - progress[first - 1])
         return float(time[first - 1] + part * (time[first] - time[first - 1]) - segment.step_s)
+
+
+class Delay(ResponseTime):
+    """Time from the step until the response sets in: the line through 10 and 50 % of it, at 0 %.
+
+    The first deviation itself would hang on noise and on orders of the wheel.
+    """
+
+    name: ClassVar[str] = "delay"
+    share_percent: float = Field(default=50.0, gt=10, lt=100, description="of the step's size, %")
+
+    @property
+    def definition(self) -> str:
+        """Where the line begins."""
+        return (
+            f"Time from the step until {self.subject} sets in: where a straight line through its first "
+            f"crossings of {_SETS_IN:g} % and {self.share_percent:g} % of the step's size begins at 0 %, "
+            f"{self.window}."
+        )
+
+    def compute(self, recording: Recording, segment: Segment) -> float:
+        """Seconds, not below 0; NotReachedError where the channel does not get there."""
+        later = super().compute(recording, segment)
+        first = self.model_copy(update={"share_percent": _SETS_IN})
+        sooner = super(Delay, first).compute(recording, segment)
+        return max(0.0, sooner - (later - sooner) * _SETS_IN / (self.share_percent - _SETS_IN))
 
 
 class ResponseTimeShaftTorque(ResponseTime):
@@ -102,9 +131,8 @@ class Arrival(_Following):
 
     def compute(self, recording: Recording, segment: Segment) -> float:
         """Percent of the step, in its direction."""
-        size = segment.reference_after - segment.reference_before
-        if size == 0:
-            raise NoValueError("the segment has no step: before and after are the same")
+        size = _signed_size(segment)
+        refuse_reversal(recording, segment)
         return 100 * (self._mean(recording, segment, self.channel) - segment.reference_after) / size
 
     def remark(self, recording: Recording, segment: Segment) -> str:
@@ -125,7 +153,7 @@ class Arrival(_Following):
 
     def _mean(self, recording: Recording, segment: Segment, channel: str) -> float:
         """Of the end of the window."""
-        start_s, end_s = self.bounds_s(segment)
+        start_s, end_s = self.bounds_s(recording, segment)
         time, values = cut(recording, segment, channel, start_s, end_s)
         first = int(np.searchsorted(time, time[-1] - self.mean_s, "right"))
         if segment.wheel_orders and _WHEEL in recording:
@@ -184,9 +212,8 @@ class Holding(_Following):
 
     def _worst(self, recording: Recording, segment: Segment) -> tuple[float, float]:
         """Time after the step, and distance from the reference in the channel's unit."""
-        if segment.reference_after == segment.reference_before:
-            raise NoValueError("the segment has no step: before and after are the same")
-        start_s, end_s = self.bounds_s(segment)
+        _signed_size(segment)
+        start_s, end_s = self.bounds_s(recording, segment)
         middle_s = 0.5 * (start_s + end_s)
         spacing_s, values = orders_removed(recording, segment, self.channel, middle_s, end_s)
         length = round(_SHORT_MEAN_S / spacing_s)
@@ -197,6 +224,13 @@ class Holding(_Following):
         worst = int(np.argmax(np.abs(away)))
         late_s = middle_s - segment.step_s + (worst + 0.5 * length) * spacing_s
         return late_s, float(away[worst])
+
+
+def _signed_size(segment: Segment) -> float:
+    """Of the step, in its direction; NoValueError if there is none."""
+    return math.copysign(
+        _reference.step_size(segment, None), segment.reference_after - segment.reference_before
+    )
 
 
 class ArrivalShaftTorque(Arrival):

@@ -15,7 +15,8 @@ from test_plans.metrics import _lines
 from test_plans.metrics._metric import ChannelName, Metric, NoValueError
 from test_plans.metrics._orders import orders_removed
 from test_plans.metrics._reference import no_step
-from test_plans.metrics._window import WindowMetric, cut, evenly
+from test_plans.metrics._samples import cut, evenly
+from test_plans.metrics._window import WindowMetric
 
 _WHEEL = "wheel_speed_rad_s"
 _REQUEST = "motor_torque_ref_nm"
@@ -111,7 +112,7 @@ class StabilityOscillation(WindowMetric):
         Raises:
             NoValueError: the window is too short, or samples are missing.
         """
-        start_s, end_s = self._second_half(segment)
+        start_s, end_s = self._second_half(recording, segment)
         spacing_s, left = orders_removed(recording, segment, self.channel, start_s, end_s)
         return _lines.lasting_line(left, spacing_s)
 
@@ -119,7 +120,7 @@ class StabilityOscillation(WindowMetric):
         """The line's frequency, and which order of the wheel it would be."""
         line = self.line(recording, segment)
         text = f"the line lies at {line.frequency_hz:.3g} Hz"
-        _, speed = cut(recording, segment, _WHEEL, *self._second_half(segment))
+        _, speed = cut(recording, segment, _WHEEL, *self._second_half(recording, segment))
         order = line.frequency_hz / max(float(np.mean(speed)) / (2 * np.pi), _LEAST_TURNS_HZ)
         whole = round(order)
         declared = any(abs(order - one) < _SAME * one for one in segment.wheel_orders)
@@ -130,9 +131,9 @@ class StabilityOscillation(WindowMetric):
             "control loop, declare it in the bench file as one of vehicle.wheel_orders"
         )
 
-    def _second_half(self, segment: Segment) -> tuple[float, float]:
+    def _second_half(self, recording: Recording, segment: Segment) -> tuple[float, float]:
         """Begin and end; NoValueError if it is too short."""
-        start_s, end_s = self.bounds_s(segment)
+        start_s, end_s = self.bounds_s(recording, segment)
         middle_s = 0.5 * (start_s + end_s)
         if end_s - middle_s < _LEAST_S:
             raise NoValueError(f"{end_s - middle_s:.3g} s are too short for a line")

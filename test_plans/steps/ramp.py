@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
 from test_plans import stimuli
 from test_plans.conductor import Array
 from test_plans.steps._excitation import Excitation
-from test_plans.steps._step import Duration, Seconds, Torque
+from test_plans.steps._step import LONGEST_S, Seconds, Torque
 
 
 class Ramp(Excitation):
@@ -18,7 +18,9 @@ class Ramp(Excitation):
     kind: ClassVar[str] = "ramp"
     from_nm: Torque = Field(description="torque at the beginning, N m")
     to_nm: Torque = Field(description="torque at the end, N m")
-    line_s: Duration = Field(alias="duration_s", description="duration of the ramp itself, s, at least 0.1")
+    line_s: Annotated[float, Field(ge=0.01, le=LONGEST_S)] = Field(
+        alias="duration_s", description="duration of the ramp itself, s, at least 0.01"
+    )
     before_s: Seconds = Field(default=0.0, description="time at from_nm before the ramp, s")
     after_s: Seconds = Field(default=0.0, description="time at to_nm after the ramp, s")
 

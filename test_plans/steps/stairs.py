@@ -20,27 +20,36 @@ class Stairs(Excitation):
         strict=False, min_length=2, max_length=1000, description="the levels in order, N m: a list"
     )
     hold_s: Duration = Field(description="time at each level, s, at least 0.1")
+    first_s: Duration | None = Field(default=None, description="time at the first level instead, s")
+    last_s: Duration | None = Field(default=None, description="time at the last level instead, s")
 
     def samples(self, sample_time_s: float, play: int) -> Array:  # noqa: ARG002 - one play
         """Level by level."""
-        return stimuli.stairs(self.levels_nm, self.hold_s, sample_time_s)
+        return stimuli.stairs(self.levels_nm, self._times_s, sample_time_s)
 
     @property
     def play_s(self) -> float:
         """All levels."""
-        return self.hold_s * len(self.levels_nm)
+        return sum(self._times_s)
 
     @property
     def mean_nm(self) -> float:
-        """Mean of the levels."""
-        return sum(self.levels_nm) / len(self.levels_nm)
+        """Mean of the levels, weighted by time."""
+        parts = zip(self.levels_nm, self._times_s, strict=True)
+        return sum(level * time_s for level, time_s in parts) / self.play_s
 
     @property
     def step_s(self) -> float:
         """When the last level begins."""
-        return self.hold_s * (len(self.levels_nm) - 1)
+        return sum(self._times_s[:-1])
 
     @property
     def references_nm(self) -> tuple[float, float]:
         """The last two levels."""
         return self.levels_nm[-2], self.levels_nm[-1]
+
+    @property
+    def _times_s(self) -> tuple[float, ...]:
+        """Of each level: a driver who changes their mind holds the middle ones shortly."""
+        between = (self.hold_s,) * (len(self.levels_nm) - 2)
+        return self.first_s or self.hold_s, *between, self.last_s or self.hold_s

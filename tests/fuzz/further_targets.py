@@ -15,6 +15,7 @@ from hil.core.can.frames import FRAME
 from hil.core.can.symbol_files import read_symbols
 from hil.core.can.xcp import Command
 from hil.core.errors import BadInputError
+from hil.core.recording import column_map, read_recording
 from hil.engine import load_bench
 from hil.plant.closed_loop import tick as T
 from sim_backend.rcs import EmulatedPanel
@@ -24,6 +25,23 @@ from tests.clocks import SteppedClock
 _PACKET_BYTES = 9  # length and eight bytes
 _MEASURED_FIRST = [bytes([number, *range(7)]) for number in range(6)]
 _ANSWERS = [b"\xff", b"\xff\x40\x00\x00\x00\x00", b"\xfe\x20", b"\xfd\x06", b"\xfc\x01"]
+
+
+#: Text as ControlDesk, LabVIEW, INCA and a test bench write it.
+TABLES = (
+    b"path,,M/T,M/n\nname,xAxis,T,n\nunit,s,Nm,rpm\ntype,f8,f8,f8\ntrace_values,0,1,2\n,0.001,1,2\n",
+    b"LabVIEW Measurement\t\nDelta_X\t0,001\n***End_of_Header***\t\nX_Value\tT\tn\tComment\n"
+    b"0\t1,5\t2\n1e-3\t1\t2\n",
+    b"ETASAsciiItemFile\trecord\nsampleCount\t2\ntime\tT\\E:1\tn\t\nf8\tf8\tf8\t\n"
+    b's\tNm\t"rpm"\t\n0\t1\t2\t\n1\t1\t2\t\n',
+    b"Bench: 7\nTIME;T;n\nhh:mm:ss;Nm;1/min\n23:59:59.999;1;2\n00:00:00.000;1;1.#IND\n\nMIN;1;2\n",
+)
+
+
+def mapped(path: Path) -> object:
+    """A table of another tool, with a map of its columns."""
+    options = ("motor_torque_ref_nm=T", "motor_speed_rad_s=n, unit=rpm, wraps=65536")
+    return read_recording(path, columns=column_map(options))
 
 
 def symbols(path: Path) -> object:

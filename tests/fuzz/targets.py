@@ -131,6 +131,8 @@ TARGETS: Mapping[str, Target] = {
     "dbc": Target(of_files(_BENCHES / "rmcu.dbc"), ".dbc", read_rmcu),
     "eds": Target(of_files(_BENCHES / "rcs_dyno.eds"), ".eds", eds),
     "csv": Target(lambda: recordings(".csv"), ".csv", read_recording),
+    "columns": Target(lambda: list(further_targets.TABLES), ".txt", further_targets.mapped),
+    "lvm": Target(lambda: list(further_targets.TABLES), ".lvm", further_targets.mapped),
     "parquet": Target(lambda: recordings(".parquet"), ".parquet", read_recording),
     "mcap": Target(of_a_run, ".mcap", read_recording),
     "asc": Target(lambda: logs(".asc"), ".asc", read_can_log),

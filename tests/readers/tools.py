@@ -58,15 +58,16 @@ def python_packages() -> Path:
 
 def python_can_source() -> Path:
     """The source package of python-can: the logs that it is tested with are in no other."""
-    return _source_package("python-can", can.__version__)
+    return source_package("python-can", can.__version__)
 
 
 def jenkins_schema() -> Path:
     """The schema of JUnit files of Jenkins' xUnit plugin; pytest tests its own files with it."""
-    return _source_package("pytest", pytest.__version__) / "testing/example_scripts/junit-10.xsd"
+    return source_package("pytest", pytest.__version__) / "testing/example_scripts/junit-10.xsd"
 
 
-def _source_package(name: str, version: str) -> Path:
+def source_package(name: str, version: str) -> Path:
+    """The source of a package of PyPI, unpacked; it is fetched once."""
     folder = PLACE / f"{name.replace('-', '_')}-{version}"
     if not folder.is_dir():
         PLACE.mkdir(parents=True, exist_ok=True)

@@ -210,6 +210,7 @@ def test_built_in_plans() -> None:
     assert library_plans() == (
         "acceptance",
         "commissioning",
+        "driveability",
         "identification",
         "short_identification",
         "slip",

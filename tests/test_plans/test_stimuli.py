@@ -78,7 +78,7 @@ def test_lines_include_both_edges() -> None:
 def test_step_ramp_and_stairs() -> None:
     assert_array_equal(stimuli.step(0.0, 5.0, 0.002, 0.003, DT), [0, 0, 5, 5, 5])
     assert_allclose(stimuli.ramp(0.0, 4.0, 0.001, 0.004, 0.002, DT), [0, 0, 1, 2, 3, 4, 4])
-    assert_array_equal(stimuli.stairs([1.0, -2.0], 0.002, DT), [1, 1, -2, -2])
+    assert_array_equal(stimuli.stairs([1.0, -2.0], [0.002, 0.001], DT), [1, 1, -2])
 
 
 @given(st.integers(1, 500), st.data())

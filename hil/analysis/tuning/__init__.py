@@ -12,7 +12,8 @@ from hil.analysis.tuning._free import (
     refuse_unknown_weights,
     shipped_free,
 )
-from hil.analysis.tuning._front import Point, front_of, metrics_of, point_of
+from hil.analysis.tuning._front import Point, front_of, metrics_of, point_of, within_hard_limits
+from hil.analysis.tuning._kept import KEPT, Kept, Worse, worse_of
 from hil.analysis.tuning._loops import SpeedLoops
 from hil.analysis.tuning._parameters import ALTERNATIVES, PARAMETERS, Space, values_of, with_values
 from hil.analysis.tuning._pool import Pool
@@ -23,6 +24,7 @@ from hil.analysis.tuning._tune import Standing, Tuning, refuse_model, refuse_sta
 
 __all__ = [
     "ALTERNATIVES",
+    "KEPT",
     "PARAMETERS",
     "Agreement",
     "Ascent",
@@ -33,6 +35,7 @@ __all__ = [
     "Driven",
     "Effort",
     "Free",
+    "Kept",
     "Measured",
     "Point",
     "Pool",
@@ -47,6 +50,7 @@ __all__ = [
     "Trial",
     "Tried",
     "Tuning",
+    "Worse",
     "channels_needed",
     "confirmation",
     "differing",
@@ -67,4 +71,6 @@ __all__ = [
     "tune",
     "values_of",
     "with_values",
+    "within_hard_limits",
+    "worse_of",
 ]

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from importlib import resources
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from hil.analysis.tuning._kept import KEPT
 from hil.analysis.tuning._parameters import ALTERNATIVES, PARAMETERS
 from hil.core.errors import BadInputError
 from hil.core.errors.mistakes import Mistake, keyed, refuse
@@ -35,6 +36,13 @@ class HardLimits(_Table):
     motor_torque_nm: float | None = Field(None, gt=0, description="largest |T_m*| in a driven segment")
     motor_energy_j: float | None = Field(None, gt=0, description="positive work in a driven segment")
     no_worse_than_start: bool = Field(False, description="no criterion may lose margin, on any vehicle")
+
+
+class Keep(_Table):
+    """What must not get worse than with the start, on the same car, by more than a share."""
+
+    share_percent: float = Field(5.0, ge=0, le=1000, description="largest worsening, % of the start's figure")
+    may_worsen: Annotated[tuple[Literal[KEPT], ...], Field(strict=False)] = ()  # type: ignore[valid-type]
 
 
 class Tolerance(_Table):
@@ -67,6 +75,7 @@ class Free(_Table):
     free: dict[str, Bounds] = Field(min_length=1)
     weights: dict[str, float] = {}
     limits: HardLimits = HardLimits()
+    keep: Keep = Keep()
     tolerance: Tolerance = Tolerance()
     where: str = ""
 

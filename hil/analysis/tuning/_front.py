@@ -1,4 +1,4 @@
-"""What can be traded for what: candidates that none beats in peak, band energy and sensitivity at once."""
+"""What can be traded for what: candidates that none beats in peak, band energy and response time at once."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from test_plans import Criterion
 
 #: Metrics that the front is of, where criteria have them.
 PEAK, BAND = "peak_shaft_torque", "band_energy_motor_speed"
+RESPONSE = "response_time"
 
 
 @dataclass(frozen=True)
 class Point:
-    """The largest of each metric over the driven segments, in its unit, and the speed loop's |S|max."""
+    """The largest of each metric over the driven segments, in its unit, and the longest response time, s."""
 
     tried: Tried
     figures: tuple[float, ...]
@@ -39,12 +40,23 @@ def point_of(tried: Tried, criteria: Sequence[Criterion]) -> Point | None:
         if not known or len(known) < len(values):
             return None
         figures.append(max(known))
-    return Point(tried, (*figures, tried.loop.sensitivity_peak))
+    slowest = max((value for one, value in tried.figures.items() if one.name == RESPONSE), default=np.inf)
+    return Point(tried, (*figures, slowest)) if np.isfinite(slowest) else None
+
+
+def within_hard_limits(tried: Tried) -> bool:
+    """Whether it was run and keeps the hard limits, however much worse than the start it is."""
+    return bool(tried.margins) and all(
+        room >= 0.0 for name, room in tried.limits.items() if not name.startswith("keep.")
+    )
 
 
 def front_of(archive: Iterable[Tried], criteria: Sequence[Criterion]) -> tuple[Point, ...]:
-    """The feasible candidates that no other is as good as in every figure, by rising first figure."""
-    points = [point for tried in archive if tried.feasible and (point := point_of(tried, criteria))]
+    """Candidates within the hard limits that no other is as good as in every figure, by rising first figure.
+
+    Those that get worse than the start by more than may be are among them: the front shows what that costs.
+    """
+    points = [point for one in archive if within_hard_limits(one) and (point := point_of(one, criteria))]
     if not points:
         return ()
     figures = np.array([point.figures for point in points])

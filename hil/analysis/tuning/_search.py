@@ -28,6 +28,7 @@ _SHORTEST = 1e-3  # step that ends it
 _SCATTERED = 10  # points for each that is gone uphill from
 _AT_ONCE = 32  # points all over the space between two words about how far it is
 _FAR_SHARE = 0.3  # of the time, when there are draws
+_BACK = (0.98, 0.95, 0.9, 0.8, 0.65, 0.5, 0.3, 0.15, 0.0)  # of the way from the start
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,7 @@ class Search:
         self._pool, self._space, self._seed, self._effort = pool, space, seed, effort
         self._show, self._stopped = show, stopped
         self.archive: list[Tried] = []
-        self.best = np.clip(start, 0.0, 1.0)
+        self.best = self._start = np.clip(start, 0.0, 1.0)
         self._best_score = self._best_worst = -np.inf
         self._best_cars: list[Tried] = []  # the best on the cars that it was searched on
         self._doing, self._share = "", 0.0
@@ -104,6 +105,24 @@ class Search:
         found = self._on_all(self.best)
         if self._joined is not None and score(self._joined[1]) > score(found):
             self.best, found = self._joined
+        return found if all(tried.feasible for tried in found) else self._backed_off(found)
+
+    def _backed_off(self, found: list[Tried]) -> list[Tried]:
+        """The best moved towards the start until it keeps every limit on every car; `found` if nothing does.
+
+        The start is as far as can be from all that must not get worse than with it, on every car.
+        """
+        beyond = [number for number, tried in enumerate(found) if not tried.feasible]
+        for share_of_way in _BACK:
+            point = self._start + share_of_way * (self.best - self._start)
+            values = self._space.values(point)
+            if not all(tried.feasible for tried in self._pool.tried([(values, n) for n in beyond])):
+                continue
+            every = self._on_all(point)
+            beyond += [n for n, tried in enumerate(every) if not tried.feasible and n not in beyond]
+            if all(tried.feasible for tried in every):
+                self.best = point
+                return every
         return found
 
     def so_far(self) -> list[Tried]:

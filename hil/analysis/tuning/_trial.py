@@ -12,6 +12,17 @@ from hil.analysis.control_design import Margins
 from hil.analysis.tuning._draws import Draw
 from hil.analysis.tuning._driven import Driven
 from hil.analysis.tuning._free import Free
+from hil.analysis.tuning._kept import (
+    CHANNELS,
+    CRITERIA,
+    Kept,
+    kept_in,
+    kept_of_loop,
+    kept_of_run,
+    margin_limit,
+    margin_room,
+    room,
+)
 from hil.analysis.tuning._loops import SpeedLoops
 from hil.analysis.tuning._parameters import with_values
 from hil.core.controller import Controller
@@ -66,6 +77,7 @@ class Tried:
         margins: weighted margins of the criteria by id; positive is good.
         limits: (limit - value)/limit of each hard limit by name; negative is beyond it.
         loop: margins of the speed loop.
+        figures: what must not get worse than the start's; those of the run only where it was run.
         trouble: why nothing was run.
     """
 
@@ -76,6 +88,7 @@ class Tried:
     criteria: tuple[CriterionResult, ...] = ()
     margins: Mapping[str, float] = field(default_factory=dict)
     trouble: str = ""
+    figures: Mapping[Kept, float] = field(default_factory=dict)
 
     @property
     def feasible(self) -> bool:
@@ -116,7 +129,7 @@ class Trial:
     draws: tuple[Draw, ...]
     loops: SpeedLoops
     execute: CarryOut
-    _known: dict[int, Mapping[str, float]] = field(default_factory=dict, repr=False, compare=False)
+    _known: dict[int, Tried] = field(default_factory=dict, repr=False, compare=False)
 
     def controller(self, values: Mapping[str, float], name: str = "tuned") -> Controller:
         """The start with `values` in place of its own."""
@@ -131,28 +144,51 @@ class Trial:
         """A candidate on car `number`; nothing is run where the loop alone is beyond the limits."""
         controller, draw = self.controller(values), self.draws[number]
         loop = self.loops.margins(controller, number)
-        limits = self._loop_limits(loop)
-        if not loop.stable or min(limits.values(), default=0.0) < 0.0:
-            return Tried(values, number, loop, limits)
+        figures = kept_of_loop(loop)
+        hard = self._loop_limits(loop)
+        limits = hard | self._room(figures, number)
+        if not loop.stable or min(hard.values(), default=0.0) < 0.0:
+            return Tried(values, number, loop, limits, figures=figures)
         try:
             found = self.execute(draw.model, controller, draw.noise, draw.seed)
         except HilError as error:
-            return Tried(values, number, loop, limits, trouble=str(error))
+            return Tried(values, number, loop, limits, trouble=str(error), figures=figures)
         limits |= self._run_limits(found)
         criteria = self.judged(found)
         margins = self.margins_of(criteria)
+        of_run = self._kept_of(found)
+        figures |= of_run
+        limits |= self._room(of_run, number) if values else room(of_run, of_run, *self._keep)
+        limits |= margin_room(margins, self._starts(number).margins if values else margins, *self._keep)
         if self.free.limits.no_worse_than_start and values:
-            own = self._starts(number)
+            own = self._starts(number).margins
             limits["no_worse_than_start"] = min(
                 margin - own.get(id_, -1.0) for id_, margin in margins.items()
             )
-        return Tried(values, number, loop, limits, criteria, margins)
+        return Tried(values, number, loop, limits, criteria, margins, figures=figures)
 
-    def _starts(self, number: int) -> Mapping[str, float]:
-        """Margins of the start on a car; tried once in each process."""
+    def _starts(self, number: int) -> Tried:
+        """The start on a car; tried once in each process."""
         if number not in self._known:
-            self._known[number] = self.tried({}, number).margins
+            self._known[number] = self.tried({}, number)
         return self._known[number]
+
+    @property
+    def _keep(self) -> tuple[float, tuple[str, ...]]:
+        return self.free.keep.share_percent / 100, self.free.keep.may_worsen
+
+    def _room(self, figures: Mapping[Kept, float], number: int) -> dict[str, float]:
+        """What is left until they are worse than the start's by more than may be."""
+        of_loop = all(not one.segment for one in figures)
+        start = (
+            kept_of_loop(self.loops.margins(self.start, number)) if of_loop else self._starts(number).figures
+        )
+        return room(figures, start, *self._keep)
+
+    def _kept_of(self, found: Predicted) -> dict[Kept, float]:
+        """Of the steps that the controller drives."""
+        driven = [segment for segment in found.segments if segment.id in self.driven.segments]
+        return kept_of_run(found.recording, driven)
 
     def judged(self, found: Predicted) -> tuple[CriterionResult, ...]:
         """The criteria that depend on the controller."""
@@ -179,7 +215,16 @@ class Trial:
     @property
     def limits(self) -> tuple[str, ...]:
         """Names of the hard limits that are asked for."""
-        return tuple(name for name, value in self.free.limits if value is not None and value is not False)
+        asked = [name for name, value in self.free.limits if value is not None and value is not False]
+        kept = [one.limit for one in self.kept if one.group not in self.free.keep.may_worsen]
+        if CRITERIA not in self.free.keep.may_worsen:
+            kept += [margin_limit(criterion.id) for criterion in self.driven.criteria]
+        return (*asked, *kept)
+
+    @property
+    def kept(self) -> tuple[Kept, ...]:
+        """Every figure that must not get worse, also those that may."""
+        return kept_in(self.driven.segments)
 
     def _loop_limits(self, loop: Margins) -> dict[str, float]:
         limits = self.free.limits
@@ -225,7 +270,10 @@ def _motor_energy_j(recording: Recording, segment: Segment) -> float:
 
 def channels_needed(trial_criteria: tuple[object, ...], free: Free) -> frozenset[str]:
     """Channels that criteria and hard limits are computed from."""
-    names = {channel for c in trial_criteria if isinstance(channel := getattr(c, "channel", None), str)}
+    names = {
+        *CHANNELS,
+        *(name for criterion in trial_criteria for name in getattr(criterion, "channels", ())),
+    }
     if free.limits.motor_torque_nm is not None:
         names.add("motor_torque_ref_nm")
     if free.limits.motor_energy_j is not None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.tuning._kept import CRITERIA, KEPT, Worse, worse_of
 from hil.analysis.tuning._parameters import PAPER_LEAD, PAPER_NOTCH, Space, values_of
 from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._search import Effort, Search
@@ -21,6 +22,8 @@ Array = npt.NDArray[np.float64]
 
 #: Step of the sensitivities, as a share of a parameter's range.
 SENSITIVITY_STEP = 0.02
+_NO_ROOM = 0.004  # of the share that is kept: the search comes no nearer
+_SAME_MARGIN = 0.01  # % of a limit
 
 
 @dataclass(frozen=True)
@@ -79,10 +82,46 @@ class Tuning:
         return (self.chosen, self.start, *self.others)
 
     @property
+    def worse(self) -> tuple[Worse, ...]:
+        """What is worse than with the start, on the car where it is so most; the plan's criteria first."""
+        before = [tried.figures for tried in self.start.tried]
+        figures = worse_of(before, [tried.figures for tried in self.chosen.tried])
+        return (*self._worse_criteria, *figures)
+
+    @property
+    def _worse_criteria(self) -> tuple[Worse, ...]:
+        """Criteria that lost margin on the car that is worst for them, in % of the limit."""
+        found = []
+        for id_ in self.traded:
+            start, own = 100 * self.start.least_margin(id_), 100 * self.chosen.least_margin(id_)
+            car = min(self.chosen.tried, key=lambda one: one.margins.get(id_, -1.0)).draw
+            if start - own > _SAME_MARGIN:
+                found.append(Worse(f"margin, {id_}", "%", start, own, (start - own) / 100, car))
+        return tuple(sorted(found, key=lambda one: -one.share))
+
+    @property
+    def held_by(self) -> tuple[str, ...]:
+        """Of what is kept, that which has no more room on some car: a search with it let go may gain more."""
+        groups = {one.limit: one.group for one in self.trial.kept}
+        least: dict[str, float] = {}
+        for tried in self.chosen.tried:
+            for name, room in tried.limits.items():
+                if name.startswith("keep."):
+                    group = groups.get(name, CRITERIA)
+                    least[group] = min(room, least.get(group, np.inf))
+        return tuple(name for name in KEPT if least.get(name, np.inf) < _NO_ROOM)
+
+    @property
+    def worst_figure(self) -> Worse:
+        """Of what is worse, that which is so most."""
+        return self.worse[0]
+
+    @property
     def better_in_every_criterion(self) -> bool:
-        """Than the start, each criterion on the car that is worst for it."""
+        """Than the start: each on the car that is worst for it, and nothing that is kept is worse on any."""
         ids = [criterion.id for criterion in self.trial.driven.criteria]
-        return all(self.chosen.least_margin(i) > self.start.least_margin(i) for i in ids)
+        better = all(self.chosen.least_margin(i) > self.start.least_margin(i) for i in ids)
+        return better and not self.worse
 
     @property
     def traded(self) -> tuple[str, ...]:

@@ -92,6 +92,8 @@ class AutotuneLoop:
         self._decide(number, "tune", what, "confirm it on the bench", why, folder / "tuned")
         refined, wire = self._stages.confirm(search, found, folder / "tuned")
         grown = self._weigh(number, refined, wire, folder / "tuned")
+        if self.closing.best_round == number:
+            self.closing.start_figures = found.start.nominal.figures
         self._refuse_another(refined, wire, grown=grown)
 
     def _better_model(self, number: int, folder: Path) -> Search:

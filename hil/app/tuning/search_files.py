@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from hil.analysis.tuning import (
+    KEPT,
     Driven,
     Free,
     SpeedLoops,
@@ -27,6 +28,7 @@ from hil.app.tuning.confirmation import Ran, as_json
 from hil.app.tuning.refinement import Refined
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import did_you_mean
 from hil.core.files.toml_file import toml_text
 from hil.core.model import load_model
 from hil.engine import BenchFile, load_bench
@@ -63,7 +65,7 @@ def load_search(request: SearchRequest) -> Search:
     """
     plan, bench, axle = load_plan(request.plan), load_bench(request.bench), load_model(request.model)
     refuse_model(axle, str(request.model))
-    wanted = read_free(request.free)
+    wanted = _let_go(read_free(request.free), request.may_worsen)
     refuse_unknown_weights(wanted, plan)
     driven = driven_by(plan, request.controller)
     start_file = request.start or driven.file
@@ -91,6 +93,23 @@ def load_search(request: SearchRequest) -> Search:
     }
     text = shipped_free() if request.free is None else toml_text(request.free)
     return Search(plan, bench, text, trial, tuple(path for path in inputs if path.is_file()), facts)
+
+
+def _let_go(free: Free, names: tuple[str, ...]) -> Free:
+    """What is free, with more that may get worse.
+
+    Raises:
+        BadInputError: nothing of that name is kept.
+    """
+    for name in names:
+        if name not in KEPT:
+            raise BadInputError(
+                f"'{name}' is not one of what a tuning keeps",
+                where="--may-worsen",
+                fix=did_you_mean(name, KEPT),
+            )
+    more = tuple(dict.fromkeys((*free.keep.may_worsen, *names)))
+    return free.model_copy(update={"keep": free.keep.model_copy(update={"may_worsen": more})})
 
 
 def _runs(plan: Plan, bench: BenchFile, driven: Driven, free: Free) -> BatchPrediction:

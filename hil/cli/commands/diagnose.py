@@ -7,6 +7,7 @@ from pathlib import Path
 from hil.analysis.diagnosis import INTERRUPTED, Diagnosis
 from hil.app.diagnose import FILES, diagnose_recordings
 from hil.app.interrupts import EXIT_CODE
+from hil.app.reading import reading_in_words
 from hil.app.requests import DiagnoseRequest
 from hil.cli.inputs import named_numbers, request_of
 from hil.cli.options.models import Diagnose
@@ -26,6 +27,8 @@ def execute(options: Diagnose) -> int:
     if options.json_:
         print_json(outcome.summary)
     else:
+        for line in reading_in_words(outcome.summary["read"]):
+            print(line)
         print(text_of(outcome.found, outcome.folder))
     return EXIT_CODE if outcome.found.unfinished == INTERRUPTED else 0
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from hil.app.feedback import warn_of_damage
+from hil.app.reading import reading_of
 from hil.app.results_folder import refuse_file, results_in
 from hil.app.run_inputs import command_again, inputs_of
 from hil.cli.options.runs import Export
@@ -17,6 +18,7 @@ from hil.core.model import load_model
 from hil.core.recording import (
     FRAME_LOGS,
     Recording,
+    column_map,
     read_recording,
     write_frames,
     write_recording,
@@ -44,7 +46,7 @@ def execute(options: Export) -> int:
         return _inputs(options.recording, out, overwrite=options.overwrite, as_json=options.as_json)
     for file in written_with(out):
         refuse_file(file, [options.recording], overwrite=options.overwrite)
-    table = read_recording(options.recording, any_replay=True)
+    table = read_recording(options.recording, any_replay=True, columns=column_map(options.columns))
     warn_of_damage(TERMINAL, [table])
     if options.frames or out.suffix.lower() in FRAME_LOGS:
         return _frames(table, out, as_json=options.as_json)
@@ -57,11 +59,12 @@ def execute(options: Export) -> int:
                 "channels": list(table.channels),
                 "damage": table.damage,
                 "notes": table.notes,
+                "read": reading_of([table]),
             }
         )
     else:
         for note in table.notes:
-            console().print(f"note: {note}", highlight=False)
+            console().print(f"note: {note}", highlight=False, markup=False, soft_wrap=True)
         console().print(f"{table.samples} samples of {len(table.channels)} channels: {out}", highlight=False)
     return 0
 

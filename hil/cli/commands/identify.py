@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hil.app.identify import identify_recordings
+from hil.app.reading import reading_in_words
 from hil.app.requests import IdentifyRequest
 from hil.cli.inputs import request_of
 from hil.cli.options.models import Identify
@@ -16,5 +17,7 @@ def execute(options: Identify) -> int:
     if options.json_:
         print_json(outcome.summary)
     else:
+        for line in reading_in_words(outcome.summary["read"]):
+            print(line)
         print(text_of(outcome.found, outcome.summary, outcome.folder))
     return 0

@@ -7,12 +7,14 @@ from pathlib import Path
 from typing import cast, get_args
 
 from hil.app.replay import replay_logs
+from hil.cli.inputs import named_numbers
 from hil.cli.options.runs import Replay
 from hil.cli.output import TERMINAL, console, count_in_words, print_criteria, print_json
 from hil.cli.streams import complain
 from hil.core.can_logs import Stamps
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable, refuse_long
+from hil.core.recording import column_map
 from hil.engine import load_bench
 from hil.engine.replay import ReplayRequest
 from test_plans import load_plan
@@ -32,6 +34,7 @@ def execute(options: Replay) -> int:
                 "samples": replayed.samples,
                 "channels": list(replayed.channels),
                 "remarks": list(replayed.remarks),
+                "columns": dict(replayed.columns),
             }
         )
     else:
@@ -58,6 +61,10 @@ def _request(options: Replay) -> ReplayRequest:
             "decoding needs either --bench or --dbc",
             fix="with a bench file: the axle's channels; with a DBC: its signals under their own names",
         )
+    if options.columns and bench is not None:
+        raise BadInputError(
+            "--columns goes with --dbc", fix="with --bench its file states which signals are which channels"
+        )
     if bus and bench is None:
         raise BadInputError("--bus goes with --bench", fix="with --dbc write --dbc CHANNEL=FILE")
     dbcs = _pairs(options.dbc or [], "--dbc", needs_key=False)
@@ -70,6 +77,8 @@ def _request(options: Replay) -> ReplayRequest:
         segments=options.segments,
         operator=options.operator,
         stamps=_stamps(options.stamps),
+        columns=column_map(options.columns),
+        shifts_s=named_numbers(options.shift or [], "--shift"),
     )
 
 
@@ -77,7 +86,7 @@ def _stamps(given: str) -> Stamps:
     for known in get_args(Stamps):
         if given == known:
             return cast(Stamps, known)
-    raise BadInputError(f"--stamps is '{printable(given, 40)}'", fix="one of: append, sort")
+    raise BadInputError(f"--stamps is '{printable(given, 40)}'", fix="one of: append, sort, log, block")
 
 
 def _pairs(given: list[str], option: str, *, needs_key: bool) -> Mapping[str, str]:

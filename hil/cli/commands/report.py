@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hil.app.reading import reading_in_words
 from hil.app.report import renew_report
 from hil.app.requests import ReportRequest
 from hil.cli.inputs import request_of
@@ -16,8 +17,10 @@ def execute(options: Report) -> int:
     result, page = renewed.result, renewed.folder / renewed.files["html"]
     if result is None:
         if options.as_json:
-            print_json({"verdict": None, "files": renewed.files})
+            print_json({"verdict": None, "files": renewed.files, "read": renewed.read})
         else:
+            for line in reading_in_words(renewed.read):
+                console().print(line, highlight=False, markup=False, soft_wrap=True)
             text = f"no plan in {renewed.recording}: a report of its channels\nreport: {page}"
             console().print(text, highlight=False)
         return 0

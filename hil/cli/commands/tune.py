@@ -30,7 +30,7 @@ def execute(options: Tune) -> int:
     request = request_of(
         TuneRequest,
         options,
-        search=request_of(SearchRequest, options, bench=bench),
+        search=request_of(SearchRequest, options, bench=bench, may_worsen=tuple(options.may_worsen or ())),
         refine=bool(options.on_bench),
         envelope=named_numbers(options.envelope or [], "--envelope"),
     )

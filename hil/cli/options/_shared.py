@@ -68,6 +68,16 @@ Controllers = Annotated[
     ),
 ]
 Operator = Annotated[str, typer.Option(help="name of the person who runs the bench; printed in the report")]
+Columns = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--columns",
+        metavar="FILE.toml|CHANNEL=COLUMN",
+        help="which column of another tool's file is which channel: a TOML file, or "
+        "'motor_speed_rad_s=n_EM, unit=rpm, sign=-1' (also scale, offset, gear, wraps, missing, derivative; "
+        "'time_s=, every_s=0.001'); repeatable",
+    ),
+]
 JsonObject = Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")]
 OverwriteFile = Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")]
 OverwriteResult = Annotated[bool, typer.Option("--overwrite", help="replace an earlier result in --out")]

@@ -101,7 +101,7 @@ class Tune:
     the run, and as predicted; with --on-bench: in the best run), 1 one does not, 3 a run failed.
     """
 
-    SEVERAL = ("--envelope",)
+    SEVERAL = ("--envelope", "--may-worsen")
 
     plan: PlanName
     model: Annotated[
@@ -134,6 +134,14 @@ class Tune:
         ),
     ] = 0
     seed: Annotated[int, typer.Option(min=0, help="random seed of sampling and search")] = 0
+    may_worsen: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME",
+            help="let this get worse than with the initial controller by more than 5 %: response_time, "
+            "steady_error, torque_effort, stability, criteria",
+        ),
+    ] = None
     starts: Annotated[
         int,
         typer.Option(min=0, max=1000, help="number of additional starting points of the optimiser"),

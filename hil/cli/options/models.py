@@ -10,6 +10,7 @@ import typer
 
 from hil.cli.completion import shipped_model
 from hil.cli.options._shared import (
+    Columns,
     JsonObject,
     ModelOption,
     OverwriteFile,
@@ -64,6 +65,7 @@ class Identify:
             help="zero-order hold of the input, ms; default: the sample time, at most 1 ms",
         ),
     ] = None
+    columns: Columns = None
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="replace an earlier identification in --out")
     ] = False
@@ -129,6 +131,7 @@ class Diagnose:
             help="processor time of the search; then the result so far is reported as unfinished",
         ),
     ] = 10.0
+    columns: Columns = None
     overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier diagnosis in --out")] = (
         False
     )
@@ -147,6 +150,7 @@ class Simulate:
     model: ModelOption
     source: Annotated[Path, typer.Option("--input", help="recording with motor_torque_ref_nm")]
     out: Annotated[Path, typer.Option(help="file to write: .csv, .parquet, .mf4 or .mat")]
+    columns: Columns = None
     overwrite: OverwriteFile = False
     as_json: JsonObject = False
 

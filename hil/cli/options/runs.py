@@ -11,6 +11,7 @@ import typer
 from hil.cli.completion import shipped_model
 from hil.cli.options._shared import (
     BenchName,
+    Columns,
     Controllers,
     JsonObject,
     Operator,
@@ -150,6 +151,7 @@ class Report:
         Path, typer.Argument(metavar="DIR_OR_RECORDING", help="a run's directory, or a recording")
     ]
     out: Annotated[Path | None, typer.Option(help="where to write; default: beside the recording")] = None
+    columns: Columns = None
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="replace the reports of another recording")
     ] = False
@@ -193,6 +195,7 @@ class Export:
             "--inputs", help="write plan, bench, model and controllers of the run to the folder --out"
         ),
     ] = False
+    columns: Columns = None
     overwrite: OverwriteFile = False
     as_json: JsonObject = False
 
@@ -241,9 +244,18 @@ class Replay:
         str,
         typer.Option(
             help="where stamps of a log go back: append (what follows was recorded later) or sort "
-            "(it was written out of order); default: such a log is refused"
+            "(it was written out of order); those of an ASC's trigger blocks: log (they count from the log's "
+            "begin) or block (from each block's date); default: a log that leaves it open is refused"
         ),
     ] = ""
+    shift: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="LOG=SECONDS",
+            help="move the clock of one of several logs, as of a tool that wrote another time zone",
+        ),
+    ] = None
+    columns: Columns = None
     operator: Annotated[
         str, typer.Option(help="name of the person who ran the bench; printed in the report")
     ] = ""

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from hil.core.can.dbc import LONGEST_BYTES, described, signal_mistakes
 from hil.core.can.dbc_text import Ranges
 from hil.core.can.frames import ERROR_FRAME, EXTENDED, FrameBlock
+from hil.core.can.j1939 import NULL_ADDRESS
 from hil.core.can.signals import Signal, signal_of
 from hil.core.errors import BadInputError
 
@@ -64,12 +65,21 @@ class Branch:
 
 @dataclass(frozen=True)
 class MessageLayout:
-    """A message's signals: each in one place, or by its selector in several."""
+    """A message's signals: each in one place, or by its selector in several.
+
+    `is_j1939`: the DBC says that its identifier is one of J1939 (`VFrameFormat` J1939PG).
+    """
 
     name: str
     id: int
     extended: bool
     signals: Mapping[str, tuple[Branch, ...]]
+    is_j1939: bool = False
+
+    @property
+    def any_address(self) -> bool:
+        """Whether every source address is meant."""
+        return self.is_j1939 and self.extended and self.id & 0xFF == NULL_ADDRESS
 
     @property
     def key(self) -> int:
@@ -117,8 +127,9 @@ def read_messages_of(path: Path) -> tuple[list[MessageLayout], list[str]]:
                 signals.setdefault(signal.name, []).append(branch)
         if signals:
             whole = {name: tuple(branches) for name, branches in signals.items()}
-            layout = MessageLayout(message.name, message.frame_id, message.is_extended_frame, whole)
-            found.append(layout)
+            is_j1939 = message.protocol == "j1939"
+            extended = message.is_extended_frame
+            found.append(MessageLayout(message.name, message.frame_id, extended, whole, is_j1939))
     if not found:
         raise BadInputError("has no message with a signal", where=str(path), fix="give a DBC with signals")
     return found, remarks

@@ -21,10 +21,12 @@ SHORT = "frames with fewer bytes than they say"
 LONGEST_DATA = 8
 
 
-#: What stamps that go back mean: no one says, what follows was recorded later, or was written out of order.
-Stamps = Literal["", "append", "sort"]
-_UNREMARKABLE_S = 10.0  # that frames were sorted which stand so close need not be stated
+#: What stamps mean where a file leaves it open: it is not stated; what goes back was recorded later, or was
+#: written out of order; those of an ASC's trigger blocks count from the log's begin, or from the block's.
+Stamps = Literal["", "append", "sort", "log", "block"]
+_UNREMARKABLE_S = 10.0  # that frames were sorted which stand so close need not be reported
 _LATE_S = 0.1  # by which a frame may stand behind newer ones
+_PAUSE_S, _ANOTHER_CLOCK_S = 60.0, 86_400.0  # that a log skips: is reported, is refused
 
 
 class LogClock:
@@ -34,7 +36,8 @@ class LogClock:
         self._stamps = stamps
         self._newest_s, self._offset_s = -math.inf, 0.0
         self._count = self._backs = self._first = 0
-        self._back_s = 0.0
+        self._back_s = self._ahead_s = 0.0
+        self._ahead_at = 0
 
     def time_s(self, stamp_s: float) -> float:
         """The time of the next frame."""
@@ -47,6 +50,11 @@ class LogClock:
             if self._stamps == "append":
                 self._offset_s += self._newest_s - time_s
                 time_s = self._newest_s
+        elif time_s - self._newest_s > max(self._ahead_s, _PAUSE_S) and self._count > 1:
+            self._ahead_s, self._ahead_at = time_s - self._newest_s, self._count
+            if self._stamps == "append" and self._ahead_s > _ANOTHER_CLOCK_S:
+                self._offset_s += self._newest_s - time_s
+                time_s = self._newest_s
         self._newest_s = max(self._newest_s, time_s)
         return time_s
 
@@ -54,18 +62,33 @@ class LogClock:
         """What was done, a sentence each.
 
         Raises:
-            BadInputError: stamps go back, and no option states what that means.
+            BadInputError: stamps go back, or skip a day or more, and it is not stated what that means.
         """
+        skipped = self._skipped(where)
         if not self._backs or (self._stamps == "sort" and self._back_s < _UNREMARKABLE_S):
-            return []
+            return skipped
         what = f"its stamps go back by up to {self._back_s:.3g} s, first at frame {self._first}"
-        if not self._stamps:
+        if self._stamps not in ("append", "sort"):
             fix = (
                 "--stamps append: what follows was recorded later; --stamps sort: it was written out of order"
             )
             raise BadInputError(what, where=where, fix=fix)
         done = "what follows was put behind" if self._stamps == "append" else "frames were sorted"
-        return [f"{what}: {done}"]
+        return [f"{what}: {done}", *skipped]
+
+    def _skipped(self, where: str) -> list[str]:
+        if not self._ahead_s:
+            return []
+        what = f"its stamps skip {self._ahead_s:.6g} s at frame {self._ahead_at}"
+        if self._ahead_s <= _ANOTHER_CLOCK_S or self._stamps == "sort":
+            return [f"{what}: no frame lies between"]
+        if self._stamps == "append":
+            return [f"{what}: what follows was put behind"]
+        raise BadInputError(
+            f"{what}, as where a clock is set during a recording",
+            where=where,
+            fix="--stamps append: what follows came next; --stamps sort: nothing was recorded between",
+        )
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,8 @@ from typing import Any, TextIO
 import can
 
 from hil.core.can.frames import FrameBlock
+from hil.core.can_logs._asc_clock import on_one_clock
+from hil.core.can_logs._busmaster import is_busmaster, messages_of
 from hil.core.can_logs._log import (
     IMPOSSIBLE,
     LONG,
@@ -32,7 +34,12 @@ from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable
 from hil.core.files import of_the_system
 
-_KINDS = {".asc": "an ASC log", ".blf": "a BLF log", ".trc": "a TRC log", ".log": "a candump log (-l or -L)"}
+_KINDS = {
+    ".asc": "an ASC log",
+    ".blf": "a BLF log",
+    ".trc": "a TRC log",
+    ".log": "a log of candump (-l or -L) or BusMaster",
+}
 _SINCE_1970_S = 1e8  # stamps below are none of wall-clock time: a log's own begin, an adapter's clock
 _COUNTED_FROM_1 = (".asc", ".blf")  # python-can counts the channels of these from 0
 _LARGEST_ID = 0x1FFF_FFFF
@@ -42,7 +49,6 @@ _CANDUMP = re.compile(
     r"(\(\d+\.\d+\)\s+\S+\s+[0-9A-Fa-f]{3,8}#(?:#[0-9A-Fa-f]*|R[0-9A-Fa-f]?|(?:[0-9A-Fa-f]{2})*))(_[0-9A-Fa-f])?"
     r"(\s+[RT])?"
 )
-_TRIGGER_BLOCK = re.compile(r"^\s*begin\s+triggerblock", re.IGNORECASE | re.MULTILINE)
 _STAMP = re.compile(r"\s*(\d+\.\d+)(?=\s)")
 
 _BLF_HEADER = 16  # bytes that every object of a BLF has: signature, sizes, type
@@ -68,7 +74,7 @@ def read_messages(path: Path, stamps: Stamps = "") -> CanLog:
     # A BLF keeps its objects in containers that are written when they are full: their order means nothing.
     clock = LogClock(stamps or "sort" if ending == ".blf" else stamps)
     try:
-        for message in _messages(path, ending, remarks):
+        for message in _messages(path, ending, stamps, remarks):
             count += 1
             kind = _misfit(message)
             if math.isfinite(message.timestamp):
@@ -77,6 +83,8 @@ def read_messages(path: Path, stamps: Stamps = "") -> CanLog:
                 left_out[kind] = left_out.get(kind, 0) + 1
             else:
                 columns.setdefault(_name(message.channel, ending), _Columns()).add(message)
+    except BadInputError:
+        raise
     except OSError as error:
         raise of_the_system(error) from error
     except Exception as error:  # of many kinds, for whatever is broken
@@ -106,10 +114,13 @@ def _misfit(message: can.Message) -> str:
     return "" if message.is_error_frame or message.dlc == len(message.data) else SHORT
 
 
-def _messages(path: Path, ending: str, remarks: list[str]) -> Iterator[can.Message]:
+def _messages(path: Path, ending: str, stamps: Stamps, remarks: list[str]) -> Iterator[can.Message]:
     reader: Any
     if ending == ".asc":
-        yield from _of_asc(path, remarks)
+        yield from _of_asc(path, stamps, remarks)
+    elif ending == ".log" and is_busmaster(path):
+        with _whole_lines(path, remarks) as text:
+            yield from messages_of(text, remarks)
     elif ending == ".blf":
         with path.open("rb") as file, _BLFReader(file) as reader:
             yield from reader
@@ -204,13 +215,10 @@ class _WithoutLastLine(io.TextIOBase):
         super().close()
 
 
-def _of_asc(path: Path, remarks: list[str]) -> Iterator[can.Message]:
+def _of_asc(path: Path, stamps: Stamps, remarks: list[str]) -> Iterator[can.Message]:
     """Messages of an ASC log with the day that its head names, if it is written as python-can knows it."""
     with _whole_lines(path, remarks) as file:
-        text = _with_whole_head(_summed(file.read()))
-    blocks = len(_TRIGGER_BLOCK.findall(text))
-    if blocks > 1:
-        remarks.append(f"has {blocks} trigger blocks: stamps were taken to count from the log's beginning")
+        text = _with_whole_head(on_one_clock(_summed(file.read()), stamps, str(path), remarks))
     try:
         next(iter(can.ASCReader(io.StringIO(text), relative_timestamp=False)), None)
         relative = False

@@ -8,8 +8,10 @@ from pathlib import Path
 from hil.core.errors import BadInputError
 from hil.core.files import refuse_unless_regular
 from hil.core.recording._checked import checked
+from hil.core.recording._column_map import AS_NAMED, ColumnMap, column_map
 from hil.core.recording._evidence import sidecar
-from hil.core.recording._formats import FRAME_LOGS, READ, WRITTEN, reader_of, writer_of
+from hil.core.recording._foreign_table import assigned_signals, columns_of
+from hil.core.recording._formats import FRAME_LOGS, NOT_READ, READ, WRITTEN, reader_of, writer_of
 from hil.core.recording._mcap_following import FollowedRecording
 from hil.core.recording._mcap_reader import read_frames
 from hil.core.recording._mcap_reader import read_mcap as read_as_written
@@ -23,23 +25,24 @@ logger = logging.getLogger(__name__)
 
 
 def read_recording(
-    path: Path, *, least_samples: int = 2, allow_missing: bool = False, any_replay: bool = False
+    path: Path,
+    *,
+    least_samples: int = 2,
+    allow_missing: bool = False,
+    any_replay: bool = False,
+    columns: ColumnMap = AS_NAMED,
 ) -> Recording:
-    """Read `.mcap`, `.csv`, `.parquet`, `.mf4` or `.mat`; refuse what no command could use.
+    """Read a file of an ending in `READ`; refuse what no command could use.
 
     Args:
+        columns: which columns of another tool's file are which channels.
         allow_missing: keep channels of which much is missing, for reports of runs that failed.
         any_replay: also one decoded from a log of another bench, which has none of the axle's channels.
 
     Raises:
         BadInputError: names file, line and column where it can.
     """
-    reader = reader_of(path.suffix.lower())
-    if reader is None:
-        raise BadInputError(
-            f"recordings end in {', '.join(READ)}", where=str(path), fix="rename or convert the file"
-        )
-    recording = reader(path)
+    recording = reader_of(path)(path, columns)
     foreign = any_replay and REPLAY in recording.metadata
     recording = checked(
         recording, least_samples=least_samples, allow_missing=allow_missing, any_channels=foreign
@@ -107,20 +110,28 @@ def write_recording(recording: Recording, path: Path) -> None:
 
 __all__ = [
     "ACCEPTED_EXPIRY",
+    "AS_NAMED",
     "BLOCK",
     "CHUNK_BYTES",
     "DEVICE",
     "FRAME_LOGS",
+    "NOT_READ",
+    "READ",
     "REPLAY",
     "RUN",
     "SEGMENT",
     "VEHICLE",
+    "WRITTEN",
+    "ColumnMap",
     "Event",
     "FollowedRecording",
     "Missing",
     "Recording",
     "RecordingWriter",
+    "assigned_signals",
     "checked",
+    "column_map",
+    "columns_of",
     "driven_by_torque",
     "missing_of",
     "read_as_written",

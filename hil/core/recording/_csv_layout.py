@@ -1,4 +1,4 @@
-"""How the CSV of another tool is laid out: separators, decimal comma, units. Nothing is guessed."""
+"""How the text of another tool is laid out: separators, decimal comma, units."""
 
 from __future__ import annotations
 
@@ -8,16 +8,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from hil.core.channels import CHANNELS, TIME
-from hil.core.errors.wording import repeated
+from hil.core.recording._assigned import Assigned
+from hil.core.recording._column_map import OPTION
+from hil.core.recording._time_stamps import TimeStamps, is_stamp
 from hil.core.units import Conversion, UnitError, conversion, has_unit, is_spelled
 
 #: Spellings of time's unit, and how many of it are a second.
-_PER_SECOND = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
-_SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab", "|": "bar"}
-_NAMED_WITH_UNIT = re.compile(r"(.+?)\s*[\[(]\s*([^\[\]()]*?)\s*[\])]")
-_TIME_NAMES = ("time", "t", "timestamp", "timestamps")
+PER_SECOND = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
 _SPELLINGS = {"sec": "s", "second": "s", "seconds": "s", "msec": "ms", "μs": "us", "µs": "us", "usec": "us"}
-_SEPARATOR_LINE = re.compile(rb"\"?sep=(.|\t)\"?", re.IGNORECASE)
 _GROUPED = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+")
 
 
@@ -27,11 +25,16 @@ class LayoutError(ValueError):
     def __init__(self, what: str, fix: str, column: str = "") -> None:
         super().__init__(what)
         self.what, self.fix, self.column = what, fix, column
+        self.line = 0  # below the first that was looked at
 
 
 @dataclass
 class Layout:
-    """Names of the columns ('' for none) and how cells are separated; `units` stand by the names, or ''."""
+    """Names of the columns ('' for none), how cells are separated, and the unit in the name of time.
+
+    `assigned` is there if a map of columns was given; `stamps` read a time that is text; a line has
+    `cells_expected`, of which those behind the names are blank.
+    """
 
     names: list[str]
     separator: str = ","
@@ -40,6 +43,9 @@ class Layout:
     per_second: float = 1.0
     conversions: dict[int, Conversion] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    assigned: Assigned | None = None
+    stamps: TimeStamps | None = None
+    cells_expected: int = 0
 
     def cells(self, line: str) -> list[str]:
         """The cells of a line."""
@@ -54,13 +60,25 @@ class Layout:
             LayoutError: a channel is in a unit that cannot be converted to its own.
         """
         for column, (name, unit) in enumerate(zip(self.names, units, strict=True)):
-            spelled = _plain(unit)
+            spelled = plain_unit(unit)
+            if self.assigned is not None and (name in CHANNELS or name in self.assigned.columns.sources):
+                self._keep(name, unit.strip().strip('"'))
+                continue
             if not spelled or name not in CHANNELS:
                 continue
-            if name == TIME:
+            if name == TIME and ":" not in unit:
                 self._take_time(column, spelled, unit)
-            elif has_unit(unit):
+            elif name != TIME and has_unit(unit):
                 self._convert(column, unit)
+
+    def _keep(self, name: str, unit: str) -> None:
+        """Take the unit of a channel of a map, to be converted with all that the map says."""
+        assert self.assigned is not None
+        if not has_unit(unit) or (name == TIME and ":" in unit):
+            return
+        known = self.assigned.units.setdefault(name, unit)
+        if plain_unit(known) != plain_unit(unit):
+            raise LayoutError(f"is in '{known}' by its name and in '{unit}' beside it", "mend the unit", name)
 
     def _convert(self, column: int, unit: str) -> None:
         name = self.names[column]
@@ -74,8 +92,8 @@ class Layout:
             self.notes.append(f"'{name}' was converted from {unit.strip().strip('[]()')} to {own}")
 
     def _take_time(self, column: int, spelled: str, unit: str) -> None:
-        if spelled not in _PER_SECOND:
-            raise LayoutError(f"is in '{unit}'", f"known: {', '.join(_PER_SECOND)}", TIME)
+        if spelled not in PER_SECOND:
+            raise LayoutError(f"is in '{unit}'", f"known: {', '.join(PER_SECOND)}", TIME)
         if self.units[column] and self.units[column] != spelled:
             raise LayoutError(
                 f"is in {self.units[column]} by its name and in '{unit}' beside it",
@@ -83,13 +101,30 @@ class Layout:
                 TIME,
             )
         self.units[column] = spelled
-        self.per_second = _PER_SECOND[spelled]
+        self.per_second = PER_SECOND[spelled]
 
     def is_of_units(self, cells: Sequence[str]) -> bool:
-        """Whether the line below the names gives their units."""
-        known = [unit for name, unit in zip(self.names, map(_plain, cells), strict=True) if name in CHANNELS]
-        spelled = any(known) and all(not unit or is_spelled(unit) for unit in known)
-        return spelled and not any(map(_number, cells))
+        """Whether a line beside the names gives their units.
+
+        Raises:
+            LayoutError: it does for some channels, and for another something that is no unit.
+        """
+        if any(map(is_number, cells)):
+            return False
+        wanted = self.assigned.columns.sources if self.assigned is not None else {}
+        beside = [(name, cell) for name, cell in zip(self.names, cells, strict=False) if plain_unit(cell)]
+        known = [(name, cell) for name, cell in beside if name in CHANNELS or name in wanted]
+        spelled = [name for name, cell in known if is_spelled(plain_unit(cell)) or is_spelled(cell)]
+        stated = [name for name, source in wanted.items() if source.unit]
+        strange = [one for one in known if one[0] not in (*spelled, *stated, TIME)]
+        if spelled and strange:
+            name, cell = strange[0]
+            raise LayoutError(
+                f"'{cell}' stands in a line of units and is none that is known",
+                f"state it: {OPTION} '{name}=COLUMN, unit=…'",
+                name,
+            )
+        return bool(spelled)
 
     def settle_decimal(self, rows: Sequence[Sequence[str]]) -> None:
         """Find out whether numbers have a decimal comma, from some rows.
@@ -97,8 +132,10 @@ class Layout:
         Raises:
             LayoutError: it cannot be known.
         """
-        columns = [column for column, name in enumerate(self.names) if name in CHANNELS]
+        wanted = self.assigned.columns.sources if self.assigned is not None else {}
+        columns = [column for column, name in enumerate(self.names) if name in CHANNELS or name in wanted]
         cells = [(row[c].strip(), self.names[c]) for row in rows for c in columns if c < len(row)]
+        cells = [(cell, name) for cell, name in cells if not cell[:1].isalpha() and not is_stamp(cell)]
         commas = [(cell, name) for cell, name in cells if "," in cell]
         if not commas or self.separator == ",":
             return
@@ -121,74 +158,14 @@ class Layout:
         self.notes.append("numbers have a decimal comma")
 
 
-def names_separator(line: bytes) -> bool:
-    """Whether a first line is no header, but tells Excel the separator: `sep=;`."""
-    return _SEPARATOR_LINE.fullmatch(line.strip()) is not None
-
-
-def layout_of(header: str) -> Layout:
-    """The layout that a header line shows.
-
-    Raises:
-        LayoutError: it names no time, or two of its names are one.
-    """
-    for separator, word in _SEPARATORS.items():
-        found = Layout([], separator)
-        cells = [cell.strip() for cell in found.cells(header)]
-        named = [_name_and_unit(cell) for cell in cells]
-        if any(name == TIME for name, _, _ in named):
-            found.names = [name for name, _, _ in named]
-            found.units = [unit if name == TIME else "" for name, unit, _ in named]
-            _settle_header(found, cells, [beside for _, _, beside in named])
-            other = next((c for c, n in zip(cells, found.names, strict=True) if n == c.lower() != c), None)
-            if other is not None:
-                found.notes.append(f"'{other}' was read as '{other.lower()}', others likewise")
-            if separator != ",":
-                found.notes.insert(0, f"columns are separated by {word}s")
-            return found
-        if any(cell.lower() in _TIME_NAMES for cell in cells):
-            raise LayoutError(
-                f"the header line has no '{TIME}', and its '{_time_like(cells)}' has no unit",
-                "name it time_s, time_ms, time_us or time_ns",
-            )
-    raise LayoutError(f"the header line has no '{TIME}'", "the first line names the channels")
-
-
-def _settle_header(found: Layout, cells: list[str], beside: list[str]) -> None:
-    duplicate = repeated(name for name in found.names if name)
-    if duplicate:
-        raise LayoutError(f"column '{duplicate[0]}' stands twice", "leave one of them out")
-    time = found.names.index(TIME)
-    if found.units[time]:
-        found.per_second = _PER_SECOND[found.units[time]]
-    found.take_units(beside)
-    if found.per_second != 1.0:
-        found.notes.append(f"'{cells[time]}' was converted from {found.units[time]} to s")
-
-
-def _name_and_unit(cell: str) -> tuple[str, str, str]:
-    """A column's name, the unit of time that its name says, and the unit that stands beside it."""
-    whole = _NAMED_WITH_UNIT.fullmatch(cell)
-    name, beside = (whole[1], whole[2]) if whole else (cell, "")
-    if name.lower() in _TIME_NAMES and _plain(beside) in _PER_SECOND:
-        return TIME, "", beside
-    head, _, unit = name.rpartition("_")
-    if head.lower() == "time" and _plain(unit) in _PER_SECOND:
-        return TIME, _plain(unit), beside
-    # what is no channel keeps its name as it is
-    return (name.lower(), "", beside) if name.lower() in CHANNELS else (cell, "", "")
-
-
-def _time_like(cells: list[str]) -> str:
-    return next(cell for cell in cells if cell.lower() in _TIME_NAMES)
-
-
-def _plain(unit: str) -> str:
-    plain = unit.strip().strip("[]()").replace("·", "").replace("*", "").replace(" ", "").lower()
+def plain_unit(unit: str) -> str:
+    """A unit without brackets and blanks, in small letters."""
+    plain = unit.strip().strip('"').strip("[]()").replace("·", "").replace("*", "").replace(" ", "").lower()
     return _SPELLINGS.get(plain, plain)
 
 
-def _number(cell: str) -> bool:
+def is_number(cell: str) -> bool:
+    """Whether a cell is a number of any country; the unit 1 is none."""
     try:
         float(cell.replace(",", "."))
     except ValueError:

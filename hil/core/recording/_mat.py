@@ -6,7 +6,7 @@ import os
 import re
 import warnings
 import zlib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from itertools import chain
 from pathlib import Path
 from typing import Any, BinaryIO, Literal
@@ -17,9 +17,10 @@ from scipy.io import loadmat, savemat
 from hil.core.channels import CHANNELS, TIME, unit_of
 from hil.core.errors import BadInputError
 from hil.core.files import refuse_unless_regular, replacing
+from hil.core.recording._column_map import AS_NAMED, ColumnMap
 from hil.core.recording._evidence import evidence_of, has_evidence, take_evidence
+from hil.core.recording._foreign_table import Column, recording_of
 from hil.core.recording._table import LARGEST_VALUES, Array, Recording, refuse_too_large
-from hil.core.units import converted
 
 _EVIDENCE, _UNITS = "hil_recording", "units"
 _HDF5 = b"\x89HDF\r\n\x1a\n"
@@ -28,15 +29,19 @@ _LONGEST_NAME = 63  # of a variable in MATLAB
 _LEVEL_7_3 = 512  # bytes of its own that MATLAB puts before HDF5
 
 
-def read_mat(path: Path) -> Recording:
+def read_mat(path: Path, columns: ColumnMap = AS_NAMED) -> Recording:
     """Read a MAT file: vectors of one length, as variables or as the fields of one structure.
 
+    Version 7.3 is HDF5, and read as such.
+
     Raises:
-        BadInputError: no MAT file, a broken one, one of version 7.3, or a known channel is no vector of real
-            numbers.
+        BadInputError: no MAT file, a broken one, or a known channel is no vector of real numbers.
     """
     refuse_unless_regular(path)
-    _refuse_hdf5(path)
+    if _is_hdf5(path):
+        from hil.core.recording._hdf5 import read_hdf5
+
+        return read_hdf5(path, columns)
     _refuse_inflating(path)
     try:
         with warnings.catch_warnings():
@@ -47,15 +52,14 @@ def read_mat(path: Path) -> Recording:
     values = {name: value for name, value in held.items() if not name.startswith("__")}
     evidence = _text(values.pop(_EVIDENCE, None))
     units = _units_of(values.pop(_UNITS, None))
-    channels: dict[str, Array] = {}
+    table: dict[str, Column] = {}
     notes: list[str] = []
-    vectors = _vectors_of(values)
+    vectors = _vectors_of(values, {TIME, *(source.column for _, source in columns.columns())})
     refuse_too_large(max((value.size for value in vectors.values()), default=0), len(vectors), str(path))
     for name, value in vectors.items():
         column = _column(value)
         if column is not None:
-            where = f"{path}: variable '{name}'"
-            channels[name] = converted(column, name, units.get(name, ""), where, notes)
+            table[name] = Column(column, units.get(name, ""))
         elif name in CHANNELS:
             raise BadInputError(
                 "is not a vector of real numbers",
@@ -64,8 +68,7 @@ def read_mat(path: Path) -> Recording:
             )
         else:
             notes.append(f"variable '{name}' is not a vector of real numbers and was left out")
-    channels = _of_one_length(channels, path, notes)
-    recording = Recording(channels, path, notes=notes)
+    recording = recording_of(table, path, columns, "variable", notes, own=evidence is not None)
     if evidence is not None:
         take_evidence(recording, evidence, f"its variable '{_EVIDENCE}'")
     return recording
@@ -115,15 +118,11 @@ class _Variables(dict[str, Any]):
         return chain(named, super().items())
 
 
-def _refuse_hdf5(path: Path) -> None:
+def _is_hdf5(path: Path) -> bool:
+    """Whether a file is HDF5, as MATLAB's version 7.3 is."""
     with path.open("rb") as file:
         beginning = file.read(_LEVEL_7_3 + len(_HDF5))
-    if beginning.startswith(_HDF5) or beginning[_LEVEL_7_3:] == _HDF5:
-        raise BadInputError(
-            "is a MAT file of version 7.3, which is not read",
-            where=str(path),
-            fix="save(..., '-v7') in MATLAB",
-        )
+    return beginning.startswith(_HDF5) or beginning[_LEVEL_7_3:] == _HDF5
 
 
 def _refuse_inflating(path: Path) -> None:
@@ -166,11 +165,11 @@ def _inflated_bytes(file: BinaryIO, size: int, most: int) -> int:
     return count
 
 
-def _vectors_of(values: dict[str, Any]) -> Mapping[str, Any]:
-    """The variables; where one structure alone holds the time, its fields."""
-    if TIME in values:
+def _vectors_of(values: dict[str, Any], named: Collection[str]) -> Mapping[str, Any]:
+    """The variables; where one structure alone holds the time, or a column of the map, its fields."""
+    if any(name in values for name in named):
         return values
-    holding = [v for v in values.values() if _is_structure(v) and TIME in v.dtype.names]
+    holding = [v for v in values.values() if _is_structure(v) and set(named) & set(v.dtype.names)]
     if len(holding) != 1:
         return values
     return {name: holding[0][name][0, 0] for name in holding[0].dtype.names}
@@ -185,24 +184,6 @@ def _column(value: Any) -> Array | None:
     if not isinstance(value, np.ndarray) or value.dtype.kind not in "fiub" or value.size != max(value.shape):
         return None
     return np.ascontiguousarray(value.reshape(-1), dtype=np.float64)
-
-
-def _of_one_length(channels: dict[str, Array], path: Path, notes: list[str]) -> dict[str, Array]:
-    """Those as long as the time; a known channel of another length is a mistake."""
-    if TIME not in channels:
-        return channels
-    samples = len(channels[TIME])
-    for name, values in channels.items():
-        if len(values) == samples:
-            continue
-        if name in CHANNELS:
-            raise BadInputError(
-                f"has {len(values)} values, {TIME} has {samples}",
-                where=f"{path}: variable '{name}'",
-                fix="save vectors of one length",
-            )
-        notes.append(f"variable '{name}' is not as long as {TIME} and was left out")
-    return {name: values for name, values in channels.items() if len(values) == samples}
 
 
 def _units_of(value: Any) -> dict[str, str]:

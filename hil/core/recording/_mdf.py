@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import datetime
 import warnings
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -13,27 +14,30 @@ import numpy as np
 from hil.core.channels import CHANNELS, INPUT, TIME, unit_of
 from hil.core.errors import BadInputError
 from hil.core.files import refuse_unless_regular, replacing
+from hil.core.recording._column_map import AS_NAMED, ColumnMap
 from hil.core.recording._evidence import EVIDENCE, evidence_of, has_evidence, take_evidence
+from hil.core.recording._foreign_table import Column, recording_of
 from hil.core.recording._table import BLOCK, Array, Recording, refuse_too_large
 from hil.core.recording.mdf_file import open_mdf
-from hil.core.units import converted
 
 _EVENT_TICKS = 1_000_000  # in a second
+_BEGINS = (b"MDF", b"UnFinMF")  # finished, and not
 _MASTERS = (2, 3)  # channel types of the standard: time stamps, stored or counted
 
 
-def read_mdf(path: Path) -> Recording:
+def read_mdf(path: Path, columns: ColumnMap = AS_NAMED) -> Recording:
     """Read MDF4; channels of other groups are put on the time stamps of the input's group.
 
     Raises:
         BadInputError: no MDF file or a broken one, or a known channel that is no column of numbers.
     """
     refuse_unless_regular(path)
+    _refuse_other(path)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             with open_mdf(path) as mdf:
-                recording = _Groups(mdf, path).read()
+                recording = _Groups(mdf, path, columns).read()
                 for index, attachment in enumerate(mdf.attachments):
                     if attachment.file_name == EVIDENCE:
                         content = mdf.extract_attachment(index)[0]
@@ -45,74 +49,67 @@ def read_mdf(path: Path) -> Recording:
         raise BadInputError("not an MDF file, or a broken one", where=str(path)) from error
 
 
-class _Groups:
-    """The channels of an open MDF file, one at a time so that the table is not held twice."""
+def _refuse_other(path: Path) -> None:
+    """Refuse what does not begin as MDF: asammdf would leave it open."""
+    with path.open("rb") as file:
+        if not file.read(8).startswith(_BEGINS):
+            raise BadInputError("not an MDF file, or a broken one", where=str(path))
 
-    def __init__(self, mdf: Any, path: Path) -> None:
-        self._mdf = mdf
-        self._path = path
+
+class _Groups:
+    """The channels of an open MDF file; those of other groups come to the stamps of the input's."""
+
+    def __init__(self, mdf: Any, path: Path, columns: ColumnMap) -> None:
+        self._mdf, self._path, self._map = mdf, path, columns
         self._notes: list[str] = []
         self._places: dict[str, tuple[int, int]] = {}
+        wanted = {source.column for _, source in columns.columns()}
         for group, content in enumerate(mdf.groups):
             for index, channel in enumerate(content.channels):
                 if channel.channel_type not in _MASTERS:
-                    self._place(str(channel.name), group, index)
+                    self._place(str(channel.name), group, index, wanted)
         rows = max((content.channel_group.cycles_nr for content in mdf.groups), default=0)
         refuse_too_large(rows, len(self._places) + 1, str(path))  # and the time
 
-    def _place(self, name: str, group: int, index: int) -> None:
+    def _place(self, name: str, group: int, index: int, wanted: Collection[str]) -> None:
         if name not in self._places:
             self._places[name] = (group, index)
-        elif name in CHANNELS:
+        elif name in CHANNELS or name in wanted:
             raise BadInputError(f"channel '{name}' stands twice", where=str(self._path))
         else:
             self._notes.append(f"channel '{name}' stands twice; the first was taken")
 
     def read(self) -> Recording:
-        channels: dict[str, Array] = {}
-        if self._places:
-            base = self._places.get(INPUT, next(iter(self._places.values())))[0]
-            masters = {group: self._master(group) for group in {g for g, _ in self._places.values()}}
-            time_s = masters[base]
-            if self._places.get(TIME, (-1, 0))[0] != base:
-                channels[TIME] = time_s
-                self._places.pop(TIME, None)
-            for name, (group, index) in self._places.items():
-                values = self._values(name, group, index)
-                if values is not None and group != base:
-                    values = self._moved(name, masters[group], values, time_s)
-                if values is not None:
-                    channels[name] = values
-        return Recording(channels, self._path, notes=self._notes)
+        masters: dict[int, Array] = {}
+        table: dict[str, Column] = {}
+        base = self._base()
+        for name, (group, index) in self._places.items():
+            if name == TIME and group != base:
+                continue
+            if group not in masters:
+                masters[group] = np.asarray(self._mdf.get_master(group), np.float64)
+            column = self._column(name, group, index, masters[group])
+            if column is not None:
+                table[name] = column
+        own = any(attachment.file_name == EVIDENCE for attachment in self._mdf.attachments)
+        return recording_of(table, self._path, self._map, "channel", self._notes, own=own)
 
-    def _master(self, group: int) -> Array:
-        return np.asarray(self._mdf.get_master(group), np.float64)
+    def _base(self) -> int:
+        """The group whose stamps are the recording's."""
+        input_column = self._map.sources[INPUT].column if INPUT in self._map.sources else INPUT
+        return self._places.get(input_column, next(iter(self._places.values()), (0, 0)))[0]
 
-    def _values(self, name: str, group: int, index: int) -> Array | None:
+    def _column(self, name: str, group: int, index: int, time_s: Array) -> Column | None:
         signal = self._mdf.get(group=group, index=index)
         if signal.samples.ndim != 1 or signal.samples.dtype.kind not in "iufb":
-            self._refuse(name, "is not numeric")
+            if name in CHANNELS:
+                raise BadInputError("is not numeric", where=f"{self._path}: channel '{name}'")
+            self._notes.append(f"channel '{name}' is not numeric and was left out")
             return None
         values: Array = signal.samples.astype(np.float64)
         if signal.invalidation_bits is not None:
             values[np.asarray(signal.invalidation_bits, bool)] = np.nan
-        where = f"{self._path}: channel '{name}'"
-        return converted(values, name, str(signal.unit or ""), where, self._notes)
-
-    def _moved(self, name: str, own_s: Array, values: Array, time_s: Array) -> Array | None:
-        """Values between their own time stamps, NaN outside of them."""
-        if np.array_equal(own_s, time_s):
-            return values
-        if len(own_s) == 0 or np.any(np.diff(own_s) <= 0):
-            self._refuse(name, "has time stamps of its own that do not increase")
-            return None
-        self._notes.append(f"channel '{name}' was interpolated at the time stamps of '{INPUT}'")
-        return np.interp(time_s, own_s, values, left=np.nan, right=np.nan)
-
-    def _refuse(self, name: str, why: str) -> None:
-        if name in CHANNELS:
-            raise BadInputError(why, where=f"{self._path}: channel '{name}'")
-        self._notes.append(f"channel '{name}' {why} and was left out")
+        return Column(values, str(signal.unit or ""), None if name == TIME else time_s)
 
 
 def write_mdf(recording: Recording, path: Path) -> None:

@@ -9,23 +9,26 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from hil.core.channels import CHANNELS, unit_of
+from hil.core.channels import CHANNELS, TIME, unit_of
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import repeated
 from hil.core.files import refuse_unless_regular, replacing
+from hil.core.recording._column_map import AS_NAMED, ColumnMap
 from hil.core.recording._evidence import EVIDENCE, evidence_of, has_evidence, take_evidence
+from hil.core.recording._foreign_table import Column, recording_of
 from hil.core.recording._table import Array, Recording, refuse_too_large
-from hil.core.units import converted
+
+_INDEX = "__index_level_0__"  # pandas' name for an index without one
 
 
-def read_parquet(path: Path) -> Recording:
+def read_parquet(path: Path, columns: ColumnMap = AS_NAMED) -> Recording:
     """Read a Parquet table, one column a channel.
 
     Raises:
         BadInputError: no Parquet file or a broken one, or a known channel that is no column of numbers.
     """
     refuse_unless_regular(path)
-    channels: dict[str, Array] = {}
+    table: dict[str, Column] = {}
     notes: list[str] = []
     try:
         with pq.ParquetFile(path, page_checksum_verification=True) as file:
@@ -35,8 +38,10 @@ def read_parquet(path: Path) -> Recording:
             evidence = (fields.metadata or {}).get(EVIDENCE.encode())
             for field in fields:
                 if _is_number(field.type):
-                    column, where = _column(file, field.name), f"{path}: column '{field.name}'"
-                    channels[field.name] = converted(column, field.name, _unit(field), where, notes)
+                    table[field.name] = Column(_column(file, field.name), _unit(field))
+                elif pa.types.is_timestamp(field.type) or pa.types.is_duration(field.type):
+                    is_index = field.name == _INDEX and TIME not in fields.names
+                    table[TIME if is_index else field.name] = Column(_since_first(file, field), "s")
                 elif field.name in CHANNELS:
                     raise BadInputError(
                         f"holds {field.type}, not numbers",
@@ -49,7 +54,7 @@ def read_parquet(path: Path) -> Recording:
         raise
     except Exception as error:  # of many kinds, for whatever is broken
         raise BadInputError("not a Parquet file, or a broken one", where=str(path)) from error
-    recording = Recording(channels, path, notes=notes)
+    recording = recording_of(table, path, columns, "column", notes, own=evidence is not None)
     if evidence is not None:
         take_evidence(recording, evidence, f"its metadata '{EVIDENCE}'")
     return recording
@@ -93,6 +98,13 @@ def _is_number(kind: Any) -> bool:
         or types.is_boolean(plain)
         or types.is_null(plain)
     )
+
+
+def _since_first(file: Any, field: Any) -> Array:
+    """A column of moments or durations, as pandas writes an index of time, in s from the first."""
+    whole = file.read(columns=[field.name]).column(0).cast(pa.int64()).to_numpy().astype(np.float64)
+    per_second = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}[field.type.unit]
+    return np.asarray((whole - whole[:1].sum()) / per_second)
 
 
 def _column(file: Any, name: str) -> Array:

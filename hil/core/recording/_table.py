@@ -92,7 +92,7 @@ class Recording:
         raise BadInputError(
             f"has no channel '{name}'",
             where=str(self.source),
-            fix=f"it has: {', '.join(self.channels)}; rename the one that holds it, in SI units"
+            fix=f"it has: {', '.join(self.channels)}; state which it is: --columns '{name}=COLUMN, unit=…'"
             if self.channels
             else "it has: none",
         )

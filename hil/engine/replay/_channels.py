@@ -12,6 +12,7 @@ from hil.core.can.frames import ERROR_FRAME, EXTENDED, FrameBlock
 from hil.core.can_logs import CanLog
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable
+from hil.engine.replay._clocks import refuse_overlap, remarks_on_clocks, shifted
 
 _PICK = "select it with --bus BUS=CHANNEL"
 
@@ -20,22 +21,29 @@ _PICK = "select it with --bus BUS=CHANNEL"
 class Frames:
     """The frames of one or several logs, their stamps on one clock that begins with the first of them.
 
-    `began_ns`: wall-clock time of its zero, ns since 1970; None if no log says.
+    `began_ns`: wall-clock time of its zero, ns since 1970; None if no log says. `remarks`: what lies between.
     """
 
     channels: Mapping[tuple[str, str], FrameBlock]
     began_ns: int | None
+    remarks: Sequence[str] = ()
 
     def of(self, choice: str) -> FrameBlock | None:
-        """Frames of a channel, in every log that has it, or of `FILE:CHANNEL`; None if there is none."""
-        blocks = [
-            block
+        """Frames of a channel, in every log that has it, or of `FILE:CHANNEL`; None if there is none.
+
+        Raises:
+            BadInputError: two logs have frames of the same time.
+        """
+        blocks = {
+            file: block
             for (file, channel), block in self.channels.items()
             if choice in (channel, f"{file}:{channel}")
-        ]
+        }
         if not blocks:
             return None
-        block = np.concatenate(blocks)
+        ends = [(file, float(b["time_s"][0]), float(b["time_s"][-1])) for file, b in blocks.items() if len(b)]
+        refuse_overlap(ends, choice)
+        block = np.concatenate(list(blocks.values()))
         return block[np.argsort(block["time_s"], kind="stable")]
 
     @property
@@ -44,12 +52,17 @@ class Frames:
         return list(dict.fromkeys(channel for _, channel in self.channels))
 
 
-def merged(logs: Sequence[CanLog]) -> Frames:
+def merged(logs: Sequence[CanLog], shifts_s: Mapping[str, float] | None = None) -> Frames:
     """All logs on one clock.
 
+    Args:
+        shifts_s: by file name, what is to be added to a log's clock.
+
     Raises:
-        BadInputError: nothing says how the stamps of several logs lie to each other, or one is given twice.
+        BadInputError: nothing says how the stamps of several logs lie to each other, they contradict each
+            other, or one is given twice.
     """
+    logs = shifted(logs, shifts_s or {})
     for place, log in enumerate(logs):
         if any(log.path.samefile(other.path) for other in logs[:place]):
             raise BadInputError("is given twice", where=str(log.path), fix="name each log once")
@@ -59,6 +72,7 @@ def merged(logs: Sequence[CanLog]) -> Frames:
                 where=str(log.path),
                 fix="replay each log separately, or give logs with absolute time stamps",
             )
+    remarks = remarks_on_clocks(logs, shifts_s or {})
     first_ns = min(
         (log.began_ns or 0) + round(1e9 * float(block["time_s"][0]))
         for log in logs
@@ -73,7 +87,7 @@ def merged(logs: Sequence[CanLog]) -> Frames:
             if key in channels:  # files of one name in two folders
                 moved = np.concatenate([channels[key], moved])
             channels[key] = moved
-    return Frames(channels, first_ns if logs[0].began_ns is not None else None)
+    return Frames(channels, first_ns if logs[0].began_ns is not None else None, remarks)
 
 
 def chosen_buses(

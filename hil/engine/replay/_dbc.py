@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -10,11 +11,12 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.can.dbc_messages import MessageLayout, MessageSamples, decoded, read_messages_of
+from hil.core.can.dbc_messages import MessageLayout, MessageSamples, decoded, keys_of, read_messages_of
 from hil.core.can.frames import FrameBlock
+from hil.core.can.j1939 import for_addresses, of_other_addresses
 from hil.core.channels import TIME
 from hil.core.errors import BadInputError
-from hil.core.recording import RecordingWriter
+from hil.core.recording import AS_NAMED, ColumnMap, RecordingWriter, assigned_signals
 from hil.engine.bench.device_kinds import descriptions_of
 from hil.engine.replay._channels import Frames, listed
 
@@ -28,19 +30,24 @@ class DbcDecoder:
 
     Args:
         dbcs: file by channel of the logs; under '' the one for all others.
+        columns: which signals are which channels.
 
     Raises:
         BadInputError: a DBC that cannot be used, a channel that is not there, or no frame that is known.
 
     Attributes:
         short: frames that end before a signal that should be in them.
+        understood: by channel of `columns`, JSON of the signal and how it was converted.
     """
 
-    def __init__(self, frames: Frames, dbcs: Mapping[str, Path]) -> None:
+    def __init__(self, frames: Frames, dbcs: Mapping[str, Path], columns: ColumnMap = AS_NAMED) -> None:
+        self._map = columns
+        self.understood: dict[str, str] = {}
         self.remarks: list[str] = []
         self.attachments: dict[str, bytes] = {}
         self.units: dict[str, str] = {}
         self._frames: dict[str, FrameBlock] = {}
+        self._layouts: dict[str, list[MessageLayout]] = {}
         layouts: dict[str, list[MessageLayout]] = {}
         for channel, path in dbcs.items():
             layouts[channel], remarks = read_messages_of(path)
@@ -56,10 +63,12 @@ class DbcDecoder:
             block = frames.of(channel)
             assert block is not None
             self._frames[_plain(channel)] = block
-            own = layouts.get(channel) or layouts.get("", [])
+            given = layouts.get(channel) or layouts.get("", [])
+            own, remarks = for_addresses(given, np.unique(keys_of(block)).tolist())
+            self.remarks += remarks
+            self._layouts[channel] = own
             found += [(_plain(channel), samples) for samples in decoded(block, own)]
         self.short = sum(samples.short for _, samples in found)
-        self._layouts = layouts
         if not found:
             names = ", ".join(str(path) for path in dbcs.values())
             raise BadInputError(
@@ -71,7 +80,11 @@ class DbcDecoder:
     def keys_of(self, file: str, channel: str) -> list[int]:
         """Keys of the messages by which a channel of a log is decoded."""
         del file
-        return [layout.key for layout in self._layouts.get(channel) or self._layouts.get("", [])]
+        return [layout.key for layout in self._layouts.get(channel, [])]
+
+    def about_unknown(self, unknown: Mapping[str, int]) -> list[str]:
+        """Why frames that are counted as of no message are not of one that only looks like theirs."""
+        return of_other_addresses([one for own in self._layouts.values() for one in own], unknown)
 
     def write(self, path: Path, began_ns: int) -> RecordingWriter:
         """Write frames and channels into a recording that is not closed yet.
@@ -90,6 +103,7 @@ class DbcDecoder:
             columns[name], missed = _placed(rows_s, samples.time_s, samples.values[signal])
             beside += missed
             self.units[name] = samples.layout.unit(signal)
+        columns = self._as_channels(columns)
         if beside:
             self.remarks.append(
                 f"{beside} samples were discarded: none of the rows is near, or another sample is nearer"
@@ -99,6 +113,15 @@ class DbcDecoder:
         writer.row_0_s = float(rows_s[0])
         self._fill(writer, columns, rows_s)
         return writer
+
+    def _as_channels(self, columns: dict[str, Array]) -> dict[str, Array]:
+        """Signals that the map names, under their channels' names and in their units."""
+        if not self._map:
+            return columns
+        found, self.units, understood, notes = assigned_signals(columns, self.units, self._map)
+        self.understood = {name: json.dumps(entry) for name, entry in understood.items()}
+        self.remarks += notes
+        return found
 
     def _fill(self, writer: RecordingWriter, columns: dict[str, Array], rows_s: Array) -> None:
         """Frames and rows by turns, so that messages are in order of time."""

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from hil.core.can_logs import CanLog, Stamps, read_can_log
 from hil.core.errors import BadInputError
 from hil.core.files import replacing, sha256_of
-from hil.core.recording import REPLAY, Recording, RecordingWriter, read_as_written
+from hil.core.recording import AS_NAMED, REPLAY, ColumnMap, Recording, RecordingWriter, read_as_written
 from hil.core.result import RunResult, Segment, verdict_of
 from hil.core.runtime.clock import utc
 from hil.core.runtime.versions import versions
@@ -18,6 +20,7 @@ from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.bus_tally import known_identifiers
 from hil.engine.replay._bench import BenchDecoder
 from hil.engine.replay._channels import Frames, chosen_buses, merged
+from hil.engine.replay._clocks import shifted
 from hil.engine.replay._counts import FrameCounts, counted
 from hil.engine.replay._dbc import DbcDecoder
 from hil.engine.replay._segments import Segments, segments_from
@@ -37,6 +40,8 @@ class ReplayRequest:
         buses: by bus of the bench file, the log's channel.
         segments: where the plan's segments lie: a recording of the run, or JSON.
         stamps: what it means that stamps of a log go back.
+        columns: which signals of a DBC are which channels.
+        shifts_s: by file name of a log, seconds to be added to its clock.
     """
 
     logs: Sequence[Path]
@@ -47,6 +52,8 @@ class ReplayRequest:
     segments: Path | None = None
     operator: str = ""
     stamps: Stamps = ""
+    columns: ColumnMap = AS_NAMED
+    shifts_s: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -58,6 +65,7 @@ class Replayed:
     counts: FrameCounts
     samples: int
     channels: tuple[str, ...]
+    columns: Mapping[str, Any]
 
 
 def replay(request: ReplayRequest, path: Path, show: Callable[[str], None] = lambda text: None) -> Replayed:
@@ -73,15 +81,19 @@ def replay(request: ReplayRequest, path: Path, show: Callable[[str], None] = lam
         show(f"reading {log.name}")
         logs.append(read_can_log(log, request.stamps))
     segments = _segments(request)
-    frames = merged(logs)
+    frames = merged(logs, request.shifts_s)
+    logs = shifted(logs, request.shifts_s)
     show("decoding")
     decoder, remarks = _decoder(request, frames)
     with replacing(path) as temporary:
         written = _write(decoder, temporary, frames.began_ns or 0)
         remarks += [f"{log.path.name}: {remark}" for log in logs for remark in log.remarks]
+        remarks += frames.remarks
         blocks = [(block, decoder.keys_of(*where)) for where, block in frames.channels.items()]
         counts = counted(logs, blocks, decoder.short)
         remarks += counts.in_words()
+        if isinstance(decoder, DbcDecoder):
+            remarks += decoder.about_unknown(counts.unknown)
         if frames.began_ns is None:
             remarks.append("the log has no date")
         found = segments.on(written.row_0_ns) if segments else ()
@@ -91,7 +103,8 @@ def replay(request: ReplayRequest, path: Path, show: Callable[[str], None] = lam
             result = result.model_copy(update={"started_at": utc(written.row_0_ns)})
         _describe(written, request, decoder, logs, frames, remarks, result, counts)
     channels = tuple(written.recording.channels)
-    return Replayed(result, tuple(remarks), counts, len(written.recording.time_s), channels)
+    columns = {name: json.loads(text) for name, text in getattr(decoder, "understood", {}).items()}
+    return Replayed(result, tuple(remarks), counts, len(written.recording.time_s), channels, columns)
 
 
 def _segments(request: ReplayRequest) -> Segments | None:
@@ -108,7 +121,7 @@ def _segments(request: ReplayRequest) -> Segments | None:
 def _decoder(request: ReplayRequest, frames: Frames) -> tuple[BenchDecoder | DbcDecoder, list[str]]:
     bench = request.bench
     if bench is None:
-        return DbcDecoder(frames, request.dbcs), []
+        return DbcDecoder(frames, request.dbcs, request.columns), []
     known = {bus: known_identifiers(bench, bus) for bus in bench.buses}
     names = {bus: {bus, str(table.channel)} for bus, table in bench.buses.items()}
     chosen, lines, channels = chosen_buses(frames, known, names, request.buses)
@@ -220,6 +233,8 @@ def _describe(
     )
     if isinstance(decoder, DbcDecoder):
         writer.describe("units", decoder.units)
+        if decoder.understood:
+            writer.describe("columns", decoder.understood)
     if bench is not None:
         writer.describe("dut", bench.dut)
         writer.describe("report", bench.report.model_dump())

@@ -77,6 +77,8 @@ def test_what_a_bench_hides_is_named_added_tuned_for_and_confirmed(tmp_path, seq
     assert told["worst_margin"]["predicted"] == pytest.approx(told["worst_margin"]["measured"], abs=0.01)
     less = [name for name, of in told["margins"].items() if of["measured"] < of["before"]]
     assert told["traded"] == less
+    assert next(iter(told)) == "worse"
+    assert all(one["words"] in " ".join(shown.split()) for one in told["worse"])
     assert told["ended"].startswith("prediction and run agree, and the margin no longer grows")
     stages = [decision["stage"] for decision in told["decisions"]]
     assert stages == ["consent", "identify", "before", "diagnose", "diagnose", "tune", "confirm"]

@@ -14,7 +14,7 @@ from hil.cli._app import guarded
 from hil.core.controller import load_controller
 from hil.core.errors import BadInputError
 from tests.docs.documented import ROOT
-from tests.hil.analysis.tuning.trials import FREE, PLAN
+from tests.hil.analysis.tuning.trials import FREE, LET_GO, PLAN
 from tests.hil.cli.test_commands import HIL
 
 MODEL = "benches/three_inertia.toml"
@@ -45,6 +45,36 @@ def test_a_controller_with_more_margin_is_written_with_its_reasons(tmp_path, inp
     assert (out / "report.pdf").read_bytes().startswith(b"%PDF")
     assert not re.search(r"<h[1-6][^>]*></h", (out / "report.html").read_text("utf-8"))
     assert guarded(["tune", *inputs, *options]) == 2  # results are there
+
+
+@pytest.mark.slow
+def test_what_became_worse_stands_first_in_text_summary_and_report(tmp_path, inputs, capsys):
+    out = tmp_path / "out"
+    quick = ["--starts", "1", "--processes", "1", "--out", str(out), "--overwrite"]
+    assert guarded(["tune", *inputs, *quick]) == 0  # everything is let go
+    shown = capsys.readouterr().out.splitlines()
+    told = json.loads((out / "tune.json").read_text())
+    assert shown[0].startswith(
+        "worse than at the start (allowed: 5 % of the start's figure; let go: response_time"
+    )
+    assert next(iter(told)) == "worse"
+    worst = told["worse"][0]
+    assert shown[1].split()[:2] == worst["words"].split()[:2]
+    assert not told["better_in_every_criterion"]
+    assert "Margin increased for every criterion, and nothing else" not in " ".join(shown)
+    html = (out / "report.html").read_text("utf-8")
+    assert 0 < html.index("Compared with the start") < html.index("Hard limits")
+    assert worst["words"] in html
+    (tmp_path / "free.toml").write_text(FREE.replace(LET_GO, ""))
+    assert guarded(["tune", *inputs, *quick]) == 0
+    kept = json.loads((out / "tune.json").read_text())
+    assert max((one["share"] for one in kept["worse"]), default=0.0) <= 0.05 + 1e-9
+    assert kept["worst_margin"] > kept["start_worst_margin"]
+    late = "response_time.phase"
+    assert (
+        kept["kept"]["controllers"]["tuned"][late] <= 1.05 * kept["kept"]["controllers"]["start"][late] + 1e-9
+    )
+    assert kept["front"]["figures"][-1] == "response_time"
 
 
 @pytest.mark.slow
@@ -83,6 +113,7 @@ def test_it_is_run_at_once_and_a_bench_with_more_dead_time_is_diagnosed(tmp_path
     ("options", "said"),
     [
         (["--free", "nowhere.toml"], "nowhere.toml"),
+        (["--may-worsen", "speed"], "'speed' is not one of what a tuning keeps"),
         (["--controller", "other"], "no segment is driven by a controller 'other'"),
         (["--differ", "0"], "--differ"),
         (["--draws", "-1"], "--draws"),

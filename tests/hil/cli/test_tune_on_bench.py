@@ -9,12 +9,12 @@ from hil.cli._app import guarded
 from hil.core.controller import load_controller
 from hil.core.recording import read_recording
 from tests.docs.documented import ROOT
-from tests.hil.analysis.tuning.trials import PLAN
+from tests.hil.analysis.tuning.trials import LET_GO, PLAN
 from tests.hil.cli.test_commands import HIL
 from tests.hil.cli.test_sim_bench import serving
 
 MODEL = "benches/three_inertia.toml"
-FREE = "[free]\nlead_deg = [0.0, 75.0]\nfeed_forward_time_s = [0.03, 0.2]\n"
+FREE = f"[free]\nlead_deg = [0.0, 75.0]\nfeed_forward_time_s = [0.03, 0.2]\n{LET_GO}"
 HARDWARE = "benches/rear_axle_socketcan.toml"
 
 

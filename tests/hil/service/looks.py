@@ -23,9 +23,10 @@ def refuse_hard_to_use(page: playwright.Page) -> None:
         assert page.evaluate("document.documentElement.scrollWidth") <= width
         for scheme in ("light", "dark"):
             page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+            page.evaluate("scrollTo(0, 0)")  # half a control under the bar that stays is small to axe
             found = page.evaluate("rules => axe.run(document, rules)", _RULES)["violations"]
-            told = [(one["id"], [node["html"] for node in one["nodes"]]) for one in found]
-            assert (told, width, scheme) == ([], width, scheme)
+            shown = [(one["id"], [node["html"] for node in one["nodes"]]) for one in found]
+            assert not shown, f"{shown} at {width} px, {scheme}"
 
 
 def roles_drawn(page: playwright.Page, canvas: str, roles: tuple[str, ...]) -> set[str]:

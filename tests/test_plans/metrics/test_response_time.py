@@ -7,9 +7,13 @@ import pytest
 
 from test_plans.metrics import (
     ArrivalShaftTorque,
+    Delay,
     NotReachedError,
     NoValueError,
+    OvershootPercentShaftTorque,
+    PeakShaftTorque,
     ResponseTimeShaftTorque,
+    Trough,
 )
 from tests.test_plans.signals import STEP, recording_of, time_axis
 
@@ -54,3 +58,45 @@ def test_without_a_step_there_is_nothing_to_follow() -> None:
     for metric in (ResponseTimeShaftTorque(), ArrivalShaftTorque()):
         with pytest.raises(NoValueError, match="no step"):
             metric.compute(recording, level)
+
+
+@pytest.mark.parametrize(("before", "after"), [(0.0, 326.0), (300.0, -150.0)])
+def test_a_ramp_after_a_dead_time_sets_in_when_the_dead_time_is_over(before: float, after: float) -> None:
+    segment = STEP.model_copy(update={"reference_before": before, "reference_after": after})
+    torque = np.interp(TIME - STEP.step_s, [0.0275, 0.1275], [before, after])
+    recording = recording_of(TIME, shaft_torque_nm=torque)
+    assert Delay(channel="shaft_torque_nm").compute(recording, segment) == pytest.approx(0.0275, abs=1e-9)
+    for share in (10.0, 50.0, 90.0):
+        found = ResponseTimeShaftTorque(share_percent=share).compute(recording, segment)
+        assert found == pytest.approx(0.0275 + share / 1000, abs=1e-9)
+
+
+@pytest.mark.parametrize(("before", "after"), [(0.0, 326.0), (300.0, -150.0)])
+@pytest.mark.parametrize(("damping", "zero"), [(0.2, 0.0), (0.5, 0.0), (0.4, -0.02)])
+def test_python_control_finds_the_same_in_both_directions(before, after, damping, zero) -> None:
+    """`step_info` of a second-order system, with a zero in the right half plane that undershoots."""
+    import control
+
+    w = 40.0
+    system = control.tf([zero, 1.0], [1 / w**2, 2 * damping / w, 1.0])
+    since = np.arange(20_001) / 1000
+    _, unit = control.step_response(system, since)
+    known = control.step_info(unit, since, final_output=1.0)
+    size = after - before
+    torque = np.full(len(TIME), before)
+    torque[3000 : 3000 + len(unit)] += size * unit
+    torque[3000 + len(unit) :] = after
+    segment = STEP.model_copy(update={"reference_before": before, "reference_after": after})
+    recording = recording_of(TIME, shaft_torque_nm=torque)
+    peak = PeakShaftTorque().compute(recording, segment)
+    assert (peak - before) / size == pytest.approx(known["Peak"], rel=1e-9)
+    overshoot = OvershootPercentShaftTorque().compute(recording, segment)
+    assert overshoot == pytest.approx(known["Overshoot"], rel=1e-9)
+    trough = Trough(channel="shaft_torque_nm").compute(recording, segment)
+    assert (trough - before) / size == pytest.approx(
+        -known["Undershoot"] / 100 if zero else unit[1], rel=1e-9, abs=1e-12
+    )
+    rise = [
+        ResponseTimeShaftTorque(share_percent=share).compute(recording, segment) for share in (10.0, 90.0)
+    ]
+    assert rise[1] - rise[0] == pytest.approx(known["RiseTime"], abs=1.001e-3)  # it takes whole samples

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from hil.core.recording import Recording
 from hil.core.result import Segment
-from test_plans.metrics import NoValueError, RideComfort
-from test_plans.metrics.ride_comfort import horizontal_weighting
+from test_plans.metrics import NoValueError, RideComfort, VibrationDose
+from test_plans.metrics.ride_comfort import horizontal_weighting, weighting_sections
 
 #: Table 3 of ISO 2631-1:1997, W_d times 1000. At 10 Hz it has 212, where its own annex A gives 202.
 TABULATED = {
@@ -91,3 +92,53 @@ def test_the_sample_at_the_windows_end_belongs_to_what_follows():
 def test_it_is_an_acceleration():
     assert RideComfort().unit == "m/s²"
     assert "W_d of ISO 2631-1:1997" in RideComfort().definition
+
+
+@pytest.mark.parametrize("frequency_hz", [1.0, 4.0, 10.0])
+def test_a_sine_gives_the_dose_of_the_closed_form(frequency_hz):
+    """The fourth power of a sine has the mean 3/8: VDV = |H| A (3 T / 8)^(1/4), H as sampled."""
+    time = np.arange(41_001) / 1000
+    omega = 2 * np.pi * frequency_hz
+    turned = np.exp(-1j * omega / 1000)
+    gain = np.prod(
+        [
+            np.abs(np.polyval(b[::-1], turned) / np.polyval(a[::-1], turned))
+            for b, a in weighting_sections(1e-3)
+        ]
+    )
+    segment = Segment(id="s", start_s=0.0, step_s=0.1, end_s=41.0)  # too short before to show a slope
+    found = VibrationDose(from_s=19.901, to_s=39.9).compute(recorded(0.02 * np.sin(omega * time)), segment)
+    assert found == pytest.approx(gain * 0.02 * (3 * 20 / 8) ** 0.25, rel=1e-9)
+    weight = float(horizontal_weighting(np.array([frequency_hz]))[0])
+    assert gain == pytest.approx(omega * weight, rel=5e-3)
+
+
+def test_scipy_filters_the_same_dose():
+    from scipy import signal
+
+    rng = np.random.default_rng(3)
+    speed = np.cumsum(0.001 * rng.standard_normal(21_001)) * 0.1
+    b: Any = [1.0]
+    a: Any = [1.0]
+    low, high, middle = 2 * np.pi * 0.4, 2 * np.pi * 100, 2 * np.pi * 2.0
+    for above, below in (
+        ([1, 0, 0], [1, np.sqrt(2) * low, low**2]),
+        ([high**2, 0], [1, np.sqrt(2) * high, high**2]),
+        ([middle, middle**2], [1, middle / 0.63, middle**2]),
+    ):
+        b, a = np.polymul(b, above), np.polymul(a, below)
+    zeros, poles, gain = cast("tuple[Any, Any, Any]", signal.tf2zpk(b, a))
+    zpk: Any = signal.bilinear_zpk(zeros, poles, gain, fs=1000)
+    segment = Segment(id="s", start_s=0.0, step_s=0.0, end_s=21.0)
+    weighted = signal.sosfilt(signal.zpk2sos(*zpk), speed - speed[0])
+    wanted = (np.sum(weighted**4) / 1000) ** 0.25
+    assert VibrationDose().compute(recorded(speed), segment) == pytest.approx(wanted, rel=1e-9)
+
+
+def test_an_acceleration_that_was_there_before_adds_no_dose():
+    time = np.arange(22_000) / 1000
+    assert VibrationDose().compute(recorded(3.0 + 0.8 * time), SEGMENT) < 1e-9
+    blow = 3.0 + 0.8 * time + 0.05 * np.maximum(time - 2.0, 0.0)
+    twice = 3.0 + 0.8 * time - 0.1 * np.maximum(time - 2.0, 0.0)
+    one, two = (VibrationDose().compute(recorded(v), SEGMENT) for v in (blow, twice))
+    assert two == pytest.approx(2 * one, rel=1e-9)

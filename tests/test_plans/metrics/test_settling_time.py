@@ -10,7 +10,14 @@ from scipy import signal
 
 from test_plans import Array
 from test_plans.conductor import PlannedSegment
-from test_plans.metrics import DidNotSettleError, NoValueError, SettlingShaftTorque, SettlingTime
+from test_plans.metrics import (
+    DidNotSettleError,
+    NoValueError,
+    Ripple,
+    SettlingShaftTorque,
+    SettlingTime,
+    SettlingToReference,
+)
 from test_plans.metrics._low_pass import low_passed
 from tests.test_plans.signals import STEP, recording_of, second_order_step, time_axis
 
@@ -197,3 +204,42 @@ def test_the_definition_tells_band_mean_and_filter() -> None:
         "not settle."
     )
     assert "within ±5 % of 80 around" in SettlingTime(channel="shaft_torque_nm", step_size=80.0).definition
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize(("misses", "settles"), [(0.04, True), (0.06, False)])
+def test_what_rests_beside_the_reference_has_settled_but_not_there(sign, misses, settles) -> None:
+    segment = STEP.model_copy(update={"reference_after": sign * 326.0})
+    time = time_axis()
+    torque = sign * 326 * (1 - misses) * -np.expm1(-5.0 * np.maximum(time - STEP.step_s, 0))
+    recording = recording_of(time, shaft_torque_nm=torque)
+    assert SettlingShaftTorque().compute(recording, segment) < 1.0
+    metric = SettlingToReference(channel="shaft_torque_nm")
+    if settles:
+        expected = -np.log((0.05 - misses) / (1 - misses)) / 5.0
+        assert metric.compute(recording, segment) == pytest.approx(expected, abs=0.003)
+    else:
+        with pytest.raises(DidNotSettleError, match="around the reference at"):
+            metric.compute(recording, segment)
+
+
+def test_an_order_of_the_wheel_is_ripple_and_keeps_nothing_from_settling() -> None:
+    time = time_axis()
+    wheel = 16.0 + 0.4 * time
+    angle = 16.0 * time + 0.2 * time**2
+    rise = 326 * -np.expm1(-5.0 * np.maximum(time - STEP.step_s, 0))
+    recording = recording_of(time, shaft_torque_nm=rise + 40.0 * np.sin(3 * angle), wheel_speed_rad_s=wheel)
+    declared = STEP.model_copy(update={"wheel_orders": (3.0,)})
+    metric = SettlingToReference(channel="shaft_torque_nm")
+    # The step's own transient leaks into what is followed of the order, for a moment.
+    assert metric.compute(recording, declared) == pytest.approx(np.log(20) / 5.0, abs=0.15)
+    with pytest.raises(DidNotSettleError):
+        metric.compute(recording, STEP)
+    assert Ripple(channel="shaft_torque_nm").compute(recording, declared) == pytest.approx(40.0, rel=1e-4)
+
+
+def test_a_ripple_has_the_amplitude_of_its_sine() -> None:
+    time = time_axis()
+    torque = 300.0 + 25.0 * np.cos(2 * np.pi * 10.0 * (time - 22.0))
+    recording = recording_of(time, shaft_torque_nm=torque)
+    assert Ripple(channel="shaft_torque_nm").compute(recording, STEP) == pytest.approx(25.0, rel=1e-9)

@@ -8,7 +8,7 @@ from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans import Array
 from test_plans.metrics import NoValueError, Peak
-from test_plans.metrics._window import cut, evenly
+from test_plans.metrics._samples import cut, evenly
 from tests.test_plans.signals import STEP, recording_of, time_axis
 
 

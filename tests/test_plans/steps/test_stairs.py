@@ -4,6 +4,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from hil.core.errors import BadInputError
+from test_plans.steps import Stairs
 from tests.test_plans.note_taker import NoteTaker
 from tests.test_plans.writing import step_of
 
@@ -23,3 +24,17 @@ def test_metrics_of_stairs_look_at_the_last_step() -> None:
 def test_refused(levels: object) -> None:
     with pytest.raises(BadInputError, match="levels_nm"):
         step_of("stairs", quantity="driving_torque", levels_nm=levels, hold_s=4)
+
+
+def test_a_driver_who_changes_their_mind_holds_the_middle_level_shortly() -> None:
+    conductor = NoteTaker()
+    keys = {"levels_nm": [300, -150, 300], "hold_s": 0.2, "first_s": 2, "last_s": 3}
+    stairs = step_of("stairs", segment="back", quantity="driving_torque", **keys)
+    stairs.execute(conductor)
+    _, samples, segment = conductor.played[0]
+    assert_array_equal(samples[[0, 1999, 2000, 2199, 2200, 5199]], [300, 300, -150, -150, 300, 300])
+    assert segment is not None
+    assert (segment.step_s, segment.end_s) == pytest.approx((2.2, 5.2))
+    assert (segment.reference_before, segment.reference_after) == (-150.0, 300.0)
+    assert isinstance(stairs, Stairs)
+    assert stairs.mean_nm == pytest.approx((300 * 2 - 150 * 0.2 + 300 * 3) / 5.2)

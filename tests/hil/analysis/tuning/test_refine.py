@@ -5,12 +5,14 @@ import pytest
 
 from hil.analysis.tuning import Effort, Measured, RefinementBudget, Space, refine, tune, values_of
 from hil.core.model import EffectUse
-from tests.hil.analysis.tuning.trials import MODEL, trial_of
+from tests.hil.analysis.tuning.trials import LET_GO, MODEL, trial_of
 
-FREE = """
+# How it refines, with everything let go that a tuning keeps.
+FREE = f"""
 [free]
 lead_deg = [0.0, 75.0]
 feed_forward_time_s = [0.03, 0.2]
+{LET_GO}
 """
 OTHER = MODEL.with_parameters(torque_delay=0.012).with_effects(
     *MODEL.effects, EffectUse("backlash", {"half_gap_rad": 0.02})

@@ -28,10 +28,16 @@ criteria:
   - {{segment: phase, metric: peak_shaft_torque, below: gain}}
   - {{segment: phase, metric: overshoot_shaft_torque}}
 """
-FREE = """
+#: Tests of how it searches let everything go that a tuning keeps; what it keeps has tests of its own.
+LET_GO = """
+[keep]
+may_worsen = ["response_time", "steady_error", "torque_effort", "stability", "criteria"]
+"""
+FREE = f"""
 [free]
 lead_deg = [0.0, 75.0]
 feed_forward_time_s = [0.03, 0.2]
+{LET_GO}
 [tolerance]
 vehicle_inertia = 0.1
 dead_time_s = 0.001

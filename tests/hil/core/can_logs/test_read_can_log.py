@@ -145,11 +145,13 @@ def test_what_trigger_blocks_were_taken_for_is_said(tmp_path: Path) -> None:
     path = tmp_path / "a.asc"
     head = "date Mon Mar 7 01:21:51.000 pm 2005\nbase hex  timestamps absolute\ninternal events logged\n"
     begin = "Begin Triggerblock Mon Mar 7 01:2{n}:51.000 pm 2005\n"
-    block = begin + "   {n}.1 1  100  Rx   d 1 0{n}\nEnd TriggerBlock\n"
-    path.write_text(head + "".join(block.format(n=n) for n in (1, 2)))
+    one = begin + "   {n}.1 1  100  Rx   d 1 0{n}\nEnd TriggerBlock\n"
+    path.write_text(head + "".join(one.format(n=n) for n in (1, 2)))
     log = read_can_log(path)
     assert log.count == 2
-    assert log.remarks == ["has 2 trigger blocks: stamps were taken to count from the log's beginning"]
+    (block,) = log.channels.values()
+    assert np.diff(block["time_s"]) == pytest.approx([61.0])
+    assert log.remarks[0] == "has 2 trigger blocks: stamps count from each block's own date"
 
 
 def test_a_blf_that_was_cut_says_so(tmp_path: Path) -> None:

@@ -56,7 +56,7 @@ def test_a_channel_that_is_not_there_is_told_with_those_that_are():
         recording()["oil_temperature_k"]
     assert caught.value.fix == (
         "it has: time_s, motor_torque_ref_nm, motor_speed_rad_s, own_channel; "
-        "rename the one that holds it, in SI units"
+        "state which it is: --columns 'oil_temperature_k=COLUMN, unit=…'"
     )
     with pytest.raises(BadInputError, match="it has: none"):
         Recording({}, Path("memory"))["time_s"]

@@ -23,7 +23,7 @@ def across(request: RunRequest) -> RunRequest:
     return request_of(asked)
 
 
-@pytest.mark.parametrize("name", ["acceptance", "commissioning", "identification", "slip"])
+@pytest.mark.parametrize("name", ["acceptance", "commissioning", "driveability", "identification", "slip"])
 @pytest.mark.parametrize("bench", ["sim", "rear_axle_socketcan"])
 def test_a_request_passes_as_it_is(name: str, bench: str):
     request = RunRequest(

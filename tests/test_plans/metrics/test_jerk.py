@@ -1,0 +1,72 @@
+"""Jerk against polynomials and sines, whose derivatives are known, through the filter as it is stated."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from test_plans.metrics import Jerk, NoValueError
+from tests.test_plans.signals import SAMPLE_TIME_S, STEP, recording_of, time_axis
+
+TIME = time_axis()
+LATE = STEP.model_copy(update={"rolling_radius_m": 0.33})
+
+
+def response(frequency_hz: float, corner_hz: float) -> float:
+    """|H|² of a second-order Butterworth by Tustin's rule: forward and backward."""
+    ratio = math.tan(math.pi * frequency_hz * SAMPLE_TIME_S) / math.tan(math.pi * corner_hz * SAMPLE_TIME_S)
+    return 1 / (1 + ratio**4)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_parabola_of_speed_has_one_jerk(sign: float) -> None:
+    speed = 8.0 + sign * 7.0 * (TIME - 5.0) ** 2 / 2
+    found = Jerk(from_s=5.0, to_s=15.0).compute(recording_of(TIME, vehicle_speed_m_s=speed), STEP)
+    assert found == pytest.approx(7.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("frequency_hz", [5.0, 12.5, 25.0])
+def test_a_sine_has_the_jerk_of_the_closed_form(frequency_hz: float) -> None:
+    speed = 0.01 * np.cos(2 * np.pi * frequency_hz * (TIME - STEP.step_s))
+    differences = (2 - 2 * math.cos(2 * math.pi * frequency_hz * SAMPLE_TIME_S)) / SAMPLE_TIME_S**2
+    wanted = 0.01 * differences * response(frequency_hz, 25.0)
+    metric = Jerk(from_s=5.0, to_s=15.0)
+    assert metric.compute(recording_of(TIME, vehicle_speed_m_s=speed), STEP) == pytest.approx(
+        wanted, rel=1e-9
+    )
+
+
+def test_the_wheel_force_over_the_mass_has_the_same_jerk() -> None:
+    w = 2 * math.pi * 5.0
+    torque = 300.0 * np.sin(w * (TIME - STEP.step_s))
+    metric = Jerk(channel="shaft_torque_nm", mass_kg=2000.0, from_s=5.0, to_s=15.0)
+    wanted = 300.0 / (0.33 * 2000.0) * math.sin(w * SAMPLE_TIME_S) / SAMPLE_TIME_S * response(5.0, 25.0)
+    recording = recording_of(TIME, shaft_torque_nm=torque)
+    assert metric.compute(recording, LATE) == pytest.approx(wanted, rel=1e-9)
+    with pytest.raises(NoValueError, match="wheel's radius"):
+        metric.compute(recording, STEP)
+
+
+def test_a_coarse_speed_is_no_source_of_jerk() -> None:
+    speed = 8.0 + 0.2 * np.maximum(TIME - STEP.step_s, 0.0)
+    fine = recording_of(TIME, vehicle_speed_m_s=np.round(speed, 6))
+    coarse = recording_of(TIME, vehicle_speed_m_s=np.round(speed, 2))
+    assert Jerk().compute(fine, STEP) > 1.0
+    with pytest.raises(NoValueError, match=r"steps of 0\.01 m/s.*shaft_torque_nm with 'mass_kg'"):
+        Jerk().compute(coarse, STEP)
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ({"channel": "motor_speed_rad_s"}, "comes from vehicle_speed_m_s or shaft_torque_nm"),
+        ({"channel": "shaft_torque_nm"}, "'mass_kg' belongs to"),
+        ({"mass_kg": 2000.0}, "'mass_kg' belongs to"),
+    ],
+)
+def test_what_gives_no_acceleration_is_refused(keys, words) -> None:
+    with pytest.raises(ValidationError, match=words):
+        Jerk(**keys)
