@@ -115,11 +115,11 @@ def search(problem: Problem, show: Callable[[str], None]) -> Search:
 
 
 def _starts(problem: Problem) -> list[Hypothesis]:
-    """The base as it came, and numbers by the data; of a chain with shafts the likelier of the two."""
+    """Numbers by the data where a mass turns; of a chain with shafts those or the base, the likelier."""
     base = Hypothesis(problem.model, dict(problem.model.parameters))
     read = read_numbers(problem.model, problem.series)
     if read is not None:
-        return [base, read]
+        return [read]
     shown = numbers_by_response(problem.model, problem.series)
 
     def likelihood(one: Hypothesis) -> float:
