@@ -64,7 +64,7 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
         (effects if named.confidence >= HALF else doubtful).append(named)
     numbers = _numbers(at)
     far = _is_far(numbers, done)
-    if not far:
+    if not far and _is_noise(done, best):  # what has no name bends numbers as well
         sure = sum(
             float(w) for one, w in zip(candidates, weights, strict=True) if {*one.names} >= {*best.names}
         )
