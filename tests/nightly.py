@@ -63,6 +63,7 @@ PARTS: dict[str, Part] = {
             "tests/bad_inputs",
             "tests/hil/test_notebook.py",
             "tests/hil/test_pytest_plugin.py",
+            "tests/hil/test_pytest_plugin_ends.py",
             "tests/hil/test_base_install.py",
             "tests/hil/campaign",
             "tests/reports",
@@ -100,7 +101,9 @@ PARTS: dict[str, Part] = {
         "processes of a run killed and frozen; faults put into the code",
         ("tests/process_faults", "tests/mutants"),
     ),
-    "readers": Part("readers of other people on every file that is written", ("tests/readers",)),
+    "readers": Part(
+        "readers of other people on every file that is written", ("tests/readers", "tests/file_kinds")
+    ),
     "fuzz": Part("damaged inputs at every parser", ("tests/fuzz",)),
     "blind-slow": Part("the fixed part of the blind diagnosis set, and its scoring", ("tests/blind",)),
     "hunt": Part("hundreds of further cases of all the sets", ("tests",), "hunt"),

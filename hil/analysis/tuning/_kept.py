@@ -1,7 +1,8 @@
 """What must not get worse while criteria gain margin: response time, steady error, torque effort, stability.
 
 A plan asks for what its author thought of. A search takes from everything else whatever it can have, and a
-slow controller overshoots little: so these figures are held against the start's on the same car.
+slow controller overshoots little: so these figures are held against the start's on the same car. On a car on
+which the start fails the plan nothing is kept but the hard limits: what fails is to be mended first.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.metrics import Arrival, NotReachedError, NoValueError, ResponseTime
 
-#: Margins of the plan's own criteria, on cars on which the start passes them all: what passes is not traded.
+#: Margins of the plan's own criteria: what passes is not traded.
 CRITERIA = "criteria"
 #: What is kept, as a file and an option name it.
 KEPT = ("response_time", "steady_error", "torque_effort", "stability", CRITERIA)
@@ -156,8 +157,8 @@ def room(
 def margin_room(
     margins: Mapping[str, float], start: Mapping[str, float], share: float, may_worsen: Iterable[str]
 ) -> dict[str, float]:
-    """What is left until a criterion has lost more margin than `share`, where the start passes them all."""
-    if CRITERIA in may_worsen or min(start.values(), default=-1.0) < 0.0:
+    """What is left until a criterion has lost more margin than `share`."""
+    if CRITERIA in may_worsen:
         return {}
     return {margin_limit(name): share + margin - start[name] for name, margin in margins.items()}
 

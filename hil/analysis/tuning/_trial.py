@@ -146,7 +146,7 @@ class Trial:
         loop = self.loops.margins(controller, number)
         figures = kept_of_loop(loop)
         hard = self._loop_limits(loop)
-        limits = hard | self._room(figures, number)
+        limits = hard | (self._room(figures, number) if self._keeps(values, number) else {})
         if not loop.stable or min(hard.values(), default=0.0) < 0.0:
             return Tried(values, number, loop, limits, figures=figures)
         try:
@@ -158,8 +158,11 @@ class Trial:
         margins = self.margins_of(criteria)
         of_run = self._kept_of(found)
         figures |= of_run
-        limits |= self._room(of_run, number) if values else room(of_run, of_run, *self._keep)
-        limits |= margin_room(margins, self._starts(number).margins if values else margins, *self._keep)
+        if not values:  # the start itself
+            limits |= room(of_run, of_run, *self._keep) | margin_room(margins, margins, *self._keep)
+        elif self._keeps(values, number):
+            limits |= self._room(of_run, number)
+            limits |= margin_room(margins, self._starts(number).margins, *self._keep)
         if self.free.limits.no_worse_than_start and values:
             own = self._starts(number).margins
             limits["no_worse_than_start"] = min(
@@ -172,6 +175,10 @@ class Trial:
         if number not in self._known:
             self._known[number] = self.tried({}, number)
         return self._known[number]
+
+    def _keeps(self, values: Mapping[str, float], number: int) -> bool:
+        """Whether anything is kept on a car: one on which the start fails is to be mended first."""
+        return not values or min(self._starts(number).margins.values(), default=-1.0) >= 0.0
 
     @property
     def _keep(self) -> tuple[float, tuple[str, ...]]:

@@ -33,7 +33,7 @@ _CARS_KEPT = 24  # whose beginning is kept: 5 MB each
 
 @dataclass
 class BatchPrediction:
-    """Carries `plan` out on the simulated bench of `bench`, one controller in the place of `file`.
+    """Executes `plan` on the simulated bench of `bench`, one controller in the place of `file`.
 
     What comes before `file` is first loaded is the same for every controller: it is predicted once for each
     car, for the last few cars. It is sent to other processes; what the bench's device files and the plan's
@@ -85,7 +85,8 @@ class BatchPrediction:
             run.execute(here.before)
             here.runs_before[key] = run, model  # the model, so that no other gets its id
             if len(here.runs_before) > _CARS_KEPT:
-                here.runs_before.popitem(last=False)
+                _, (oldest, _) = here.runs_before.popitem(last=False)
+                oldest.free_rows()  # now: parts of a run hold each other, and garbage is collected seldom
         here.runs_before.move_to_end(key)
         return here.runs_before[key][0]
 

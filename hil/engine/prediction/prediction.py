@@ -140,6 +140,10 @@ class PredictedRun:
         """What was measured and commanded so far."""
         return self._bench.loop.closed.rows
 
+    def free_rows(self) -> None:
+        """Free the memory of what was measured; the run cannot go on."""
+        self._bench.loop.closed.free_rows()
+
     def ended(self) -> Prediction:
         """What the run would have recorded, once the bench is safe."""
         bench, conductor = self._bench, self._conductor

@@ -83,6 +83,10 @@ class ClosedLoop:
             self._rows = np.zeros((max(_FIRST_ROWS, len(kept)), T.COLUMNS))
         self._rows[: len(kept)] = kept
 
+    def free_rows(self) -> None:
+        """Free the memory of all rows."""
+        self.first, self._rows = self.samples, np.zeros((0, T.COLUMNS))
+
     def continued(self, room: Array) -> ClosedLoop:
         """A bench of its own that goes on from here.
 

@@ -1,4 +1,4 @@
-"""What a tuning keeps: nobody asked for it in the plan, and it must not be paid with."""
+"""What a tuning keeps: no one asked for it in the plan, and it must not be paid with."""
 
 import math
 from pathlib import Path
