@@ -152,6 +152,12 @@ def _check_limits(keys: CriterionKeys, metric: Metric, document: Document, path:
             where=document.place((*path, "lower")),
             fix="give an upper limit, or a lower one above 0",
         )
+    if metric.never_negative and keys.upper is not None and keys.upper < 0:
+        raise BadInputError(
+            f"no value can meet upper = {keys.upper:g}: '{keys.metric}' is never negative",
+            where=document.place((*path, "upper")),
+            fix="give an upper limit of 0 or more",
+        )
     if keys.unit is not None and _plain(keys.unit) != _plain(metric.unit):
         raise BadInputError(
             f"the unit of '{keys.metric}' is '{metric.unit}', not {keys.unit!r}",

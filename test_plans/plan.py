@@ -64,8 +64,16 @@ class Plan(PlanKeys):
 
     @property
     def device_criteria(self) -> tuple[Criterion, ...]:
-        """What any device must do in the plan's steps, whatever its author asks."""
-        return self.device.criteria(self.segments)
+        """What any device must do in the plan's steps, whatever its author asks.
+
+        One whose id a criterion of the plan has gets `device_` before its metric: each has a name of its own.
+        """
+        taken = {one.id for one in self.criteria}
+        found = self.device.criteria(self.segments)
+        return tuple(
+            one.model_copy(update={"id": one.id.replace(".", ".device_", 1)}) if one.id in taken else one
+            for one in found
+        )
 
     @property
     def device_gaps(self) -> tuple[str, ...]:

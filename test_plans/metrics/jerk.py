@@ -34,7 +34,9 @@ class Jerk(WindowMetric):
     channel: ChannelName = Field(
         default=_SPEED, description=f"{_SPEED} (default), or {_TORQUE} with 'mass_kg'"
     )
-    low_pass_hz: float = Field(default=25.0, gt=0, description="corner frequency of the low-pass filter, Hz")
+    low_pass_hz: float = Field(
+        default=25.0, gt=0, lt=500, description="corner frequency of the low-pass filter, Hz"
+    )
     mass_kg: float | None = Field(
         default=None, gt=0, description="vehicle's mass, kg: the wheel force over it is the acceleration"
     )
@@ -43,7 +45,9 @@ class Jerk(WindowMetric):
     def _has_an_acceleration(self) -> Self:
         if self.channel not in (_SPEED, _TORQUE):
             raise ValueError(f"the vehicle's jerk comes from {_SPEED} or {_TORQUE}, not {self.channel}")
-        if (self.channel == _TORQUE) != (self.mass_kg is not None):
+        if self.channel == _TORQUE and self.mass_kg is None:
+            raise ValueError(f"channel {_TORQUE} needs 'mass_kg', the vehicle's mass")
+        if self.channel != _TORQUE and self.mass_kg is not None:
             raise ValueError(f"'mass_kg' belongs to channel {_TORQUE}, and to no other")
         return self
 
@@ -63,7 +67,8 @@ class Jerk(WindowMetric):
         return (
             f"Largest magnitude of the {source} ({self.subject}), {self.window}. Low-pass filtered at "
             f"{self.low_pass_hz:g} Hz (Butterworth, order {ORDER}, forward and backward); central "
-            "differences."
+            "differences of neighbouring samples. The filter's last period before the segment's end is left "
+            "out."
         )
 
     def compute(self, recording: Recording, segment: Segment) -> float:
@@ -86,7 +91,9 @@ class Jerk(WindowMetric):
             raise NoValueError(f"{1 / spacing_s:.4g} samples a second do not reach {self.low_pass_hz:g} Hz")
         jerk = self._differentiated(even, spacing_s) * self._scale(segment)
         grid = time[0] + spacing_s * np.arange(len(even))
-        inside = (grid >= start_s - 0.5 * spacing_s) & (grid <= end_s + 0.5 * spacing_s)
+        # Beyond the segment the next request acts: near its end the filter continues the samples by itself.
+        known_until_s = min(end_s, segment.end_s - 1 / self.low_pass_hz)
+        inside = (grid >= start_s - 0.5 * spacing_s) & (grid <= known_until_s + 0.5 * spacing_s)
         place = int(np.argmax(np.where(inside, np.abs(jerk), -1.0)))
         if self.mass_kg is None:
             self._refuse_coarse(values, spacing_s, abs(float(jerk[place])))

@@ -84,6 +84,12 @@ class Trough(Extreme):
         lowest, highest = self.extremes(recording, segment)
         return highest if is_downward(segment) else lowest
 
+    def objection(self, segment: PlannedSegment) -> str:
+        """No step that it could lie against."""
+        if segment.reference_before == segment.reference_after:
+            return f"a {segment.kind} has no step that a trough lies against: limit 'magnitude'"
+        return super().objection(segment)
+
     def objection_to_limits(self, segment: PlannedSegment, limits: Limits) -> str:
         """A limit on the side to which the trough does not go."""
         if limits.below:

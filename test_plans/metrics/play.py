@@ -56,7 +56,7 @@ class _InPlay(WindowMetric):
         before, after = segment.reference_before, segment.reference_after
         if before == after and self.firm_nm is None:
             return f"a {segment.kind} has no step: give 'firm_nm', or choose another metric"
-        if before * after > 0:
+        if before != after and before * after > 0:
             return f"the torque keeps its sign, {before:g} to {after:g} N m: no flank is left"
         return super().objection(segment)
 
@@ -105,9 +105,11 @@ class TimeInPlay(_Passage):
         )
 
     def compute(self, recording: Recording, segment: Segment) -> float:
-        """Seconds; 0 where no flank is left for the other."""
-        found = self.contacts(recording, segment)
-        return float(sum(one.contact_s - one.left_s for one in found if one.left_s is not None))
+        """Seconds; NotReachedError where the torque passes to no other flank."""
+        times = [c.contact_s - c.left_s for c in self.contacts(recording, segment) if c.left_s is not None]
+        if not times:  # a torque that never passes spends no time in play, which proves nothing
+            raise NotReachedError(f"{self.channel} passes from no flank to the other firmly in the window")
+        return float(sum(times))
 
 
 class PlayCrossings(_Passage):
@@ -129,7 +131,10 @@ class PlayCrossings(_Passage):
         )
 
     def compute(self, recording: Recording, segment: Segment) -> float:
-        """The number."""
+        """The number; NotReachedError where no flank is met firmly at all."""
+        _, torque = self.samples(recording, segment)
+        if np.max(np.abs(torque)) < self._firm(segment):
+            raise NotReachedError(f"{self.channel} meets no flank firmly in the window")
         return float(sum(one.left_s is not None for one in self.contacts(recording, segment)))
 
 

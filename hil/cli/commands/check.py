@@ -65,6 +65,9 @@ def _verdict(predicted: Forecast, unstable: list[str]) -> str:
     for source, name in (("plan", "criteria"), ("device", "device checks")):
         asked = [criterion for criterion in predicted.criteria if criterion.source == source]
         failed = sum(criterion.failed for criterion in asked)
+        unknown = sum(criterion.verdict == "error" for criterion in asked)
+        if unknown:
+            verdict += f"; [bold red]{unknown} of {len(asked)} {name} cannot be computed[/]"
         if failed:
             verdict += f"; [bold red]{failed} of {len(asked)} {name} are predicted to fail[/]"
     if unstable:

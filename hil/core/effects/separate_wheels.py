@@ -9,8 +9,23 @@ has the equations.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from hil.core.effects._effect import Effect, Parameter, Stage
 from hil.core.effects._law import Law
+
+
+def _together(values: Mapping[str, Any], others: Mapping[str, Mapping[str, Any]]) -> str:
+    apart = values["friction_left"] != 1.0 or values["friction_right"] != 1.0
+    if apart and not others.get("tyre_friction", {}).get("peak_nm"):
+        return (
+            "friction_left and friction_right are shares of what 'tyre_friction' has, "
+            "and the model has none: "
+            'add [[effects]] id = "tyre_friction" with a peak_nm above 0'
+        )
+    return ""
+
 
 EFFECT = Effect(
     id="separate_wheels",
@@ -46,5 +61,6 @@ EFFECT = Effect(
     ),
     needs=("three_inertia",),
     law=Law(sides=True),
+    together=_together,
     similar=("tyre_friction",),
 )

@@ -15,6 +15,8 @@ that slides. Where `tyre_slip` is there too, its relaxation comes on top.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
 from hil.core.chain import Chain
 from hil.core.effects._effect import Effect, Memory, Parameter, Stage
@@ -45,6 +47,15 @@ def _tyre(motion: Motion, chain: Chain, travel: float, values: Values) -> float:
 def _remember(before: Motion, after: Motion, chain: Chain, travel: float, values: Values, h: float) -> float:
     """Travel of the vehicle, rad of a wheel that does not slip."""
     return travel + 0.5 * h * (before.vehicle_speed + after.vehicle_speed)
+
+
+def _together(values: Mapping[str, Any], others: Mapping[str, Mapping[str, Any]]) -> str:
+    if 0.0 < values["peak_nm"] < values["sliding_nm"]:
+        return (
+            f"sliding_nm is {values['sliding_nm']:g} N m, above peak_nm, {values['peak_nm']:g}: "
+            "a tyre that slides holds no more than its peak"
+        )
+    return ""
 
 
 EFFECT = Effect(
@@ -95,4 +106,5 @@ EFFECT = Effect(
     law=Law(tyre=_tyre, tyre_rate=_sliding, remember=_remember),
     memory=Memory("rad", "travel of the vehicle, as an angle of a wheel that does not slip"),
     similar=("tyre_slip",),
+    together=_together,
 )

@@ -200,7 +200,20 @@ def _effects(entries: Any, kind: str, mistakes: Mistakes) -> tuple[EffectUse, ..
     for number, entry in enumerate(entries, 1):
         with mistakes.of(f"effects[{number}]"):
             uses.append(_effect(entry, kind, uses))
+    _check_together(uses, mistakes)
     return tuple(uses)
+
+
+def _check_together(uses: list[EffectUse], mistakes: Mistakes) -> None:
+    """Values that make no sense beside the other effects."""
+    others = {use.id: use.values for use in uses}
+    for number, use in enumerate(uses, 1):
+        together = EFFECTS[use.id].together
+        why = together(use.values, others) if together is not None else ""
+        if why:
+            with mistakes.of(f"effects[{number}]"):
+                what, _, fix = why.partition(": ")
+                raise BadInputError(f"'{use.id}': {what}", fix=fix)
 
 
 def _effect(entry: Mapping[str, Any], kind: str, others: list[EffectUse]) -> EffectUse:

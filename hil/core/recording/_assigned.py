@@ -71,6 +71,7 @@ class Assigned:
         for cell in source.missing or ():
             values[values == cell] = np.nan
         if source.wraps:
+            _refuse_beyond(values, source.wraps, where)
             values = _unwrapped(values, source.wraps)
         values = values * source.scale + source.offset
         values = found.of(values) * (source.sign * _past_gear(channel, source.gear))
@@ -108,6 +109,7 @@ class Assigned:
         if every_s and channels:
             samples = len(next(iter(channels.values())))
             counted: Array = np.arange(samples, dtype=np.float64) * every_s
+            _refuse_other_pace(channels.get(TIME), every_s)
             channels = {
                 TIME: counted,
                 **{n: v for n, v in channels.items() if n != TIME},
@@ -204,6 +206,32 @@ def _bare(unit: str) -> str:
 def _past_gear(channel: str, gear: float) -> float:
     """Factor from one shaft of a gear to the other, speed over `gear` being the slower one's."""
     return gear if unit_of(channel) == "N m" else 1.0 / gear
+
+
+def _refuse_other_pace(time_s: Array | None, every_s: float) -> None:
+    """Stamps may be rounded or repeat; they do not take another time altogether."""
+    if time_s is None or len(time_s) < 2:
+        return
+    took_s = float(np.nanmax(time_s) - np.nanmin(time_s))
+    counted_s = every_s * (len(time_s) - 1)
+    if took_s > 0 and not 0.9 < counted_s / took_s < 1.1:
+        raise BadInputError(
+            f"every_s = {every_s:g} makes {counted_s:g} s, the column of time goes over {took_s:g} s",
+            where=TIME,
+            fix="leave every_s out, or write 'time_s=, every_s=…' if the column is no time",
+        )
+
+
+def _refuse_beyond(values: Array, span: float, where: str) -> None:
+    """Cells of a counter cover no more than the range after which it begins again."""
+    there = values[np.isfinite(values)]
+    covered = float(np.ptp(there)) if len(there) else 0.0
+    if covered > span or (len(there) and np.max(np.abs(there)) > 2 * span):
+        raise BadInputError(
+            f"wraps is {span:g}, its cells go from {np.min(there):g} to {np.max(there):g}",
+            where=where,
+            fix="give the range after which it begins again, in the column's own numbers",
+        )
 
 
 def _unwrapped(values: Array, span: float) -> Array:

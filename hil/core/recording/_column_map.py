@@ -125,8 +125,12 @@ def _of_option(text: str) -> tuple[str, Source]:
     column, *keys = _NEXT_KEY.split(f" {rest}")
     table: dict[str, Any] = {"column": column.strip()}
     for key in keys:
-        name, _, value = key.partition("=")
-        table[name.strip()] = _value(name.strip(), value.strip())
+        name, _, value = (part.strip() for part in key.partition("="))
+        if name in table:
+            raise BadInputError(
+                f"{name} stands twice", where=f"{OPTION} {printable(text, 60)}", fix="give it once"
+            )
+        table[name] = _value(name, value)
     channel = channel.strip()
     try:
         return channel, _source(channel, table)

@@ -8,7 +8,8 @@ from scipy.integrate import solve_ivp
 
 from benchmarks.low_friction import ride
 from hil.core.effects import EFFECTS
-from hil.core.model import EffectUse, Model
+from hil.core.errors import BadInputError
+from hil.core.model import EffectUse, Model, model_from_dict
 from hil.plant import LONGEST_STEP_S, Start, pack, simulate
 from hil.plant import _kernel as K
 from tests.hil.plant.test_effects import DT, THREE, many, stepped
@@ -112,3 +113,22 @@ def test_control_calms_the_shafts_on_a_road_with_patches():
     """Against no control: 60 % less at least, by lead and notch alike (docs/how-to/low-friction.md)."""
     free = ride("").range_nm
     assert all(ride(f"{name}_stabilization").range_nm < 0.4 * free for name in ("phase", "gain"))
+
+
+@pytest.mark.parametrize(
+    ("effects", "said"),
+    [
+        ([{"id": "tyre_friction", "peak_nm": 1000.0, "sliding_nm": 2400.0}], "above peak_nm"),
+        ([{"id": "separate_wheels", "friction_left": 0.05}], "the model has none"),
+        (
+            [
+                {"id": "tyre_friction", "peak_nm": 0.0, "sliding_nm": 1.0},
+                {"id": "separate_wheels", "friction_right": 0.05},
+            ],
+            "the model has none",
+        ),
+    ],
+)
+def test_values_that_make_no_sense_together_are_refused(effects: list[dict[str, object]], said: str) -> None:
+    with pytest.raises(BadInputError, match=said):
+        model_from_dict({"kind": "three_inertia", "parameters": dict(P), "effects": effects}, "here")

@@ -292,3 +292,8 @@ def test_a_map_undoes_what_another_tool_did(
     np.testing.assert_allclose(
         found["motor_speed_rad_s"], truth, atol=1e-6 * max(1.0, abs(offset)), rtol=1e-9
     )
+
+
+def test_a_key_that_stands_twice_is_refused() -> None:
+    with pytest.raises(BadInputError, match="unit stands twice"):
+        column_map(["motor_speed_rad_s=n, unit=rpm, unit=rad/s"])
