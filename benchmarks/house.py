@@ -14,7 +14,7 @@ from collections.abc import Mapping
 
 PACKAGES = ("hil", "drivers", "test_plans", "reports", "sim_backend")
 _WORDS = re.compile(
-    r"(?i)\b(told|said|shel(?:f|ves)|desk|arrivals|cared|foretold|begun|carried|execute|nobody|kin)\b"
+    r"(?i)\b(told|said|shel(?:f|ves)|desk|arrivals|cared|foretold|begun|carried|carry_out|nobody|kin)\b"
 )
 _PRIVATE = re.compile(r"^\s*from ([\w.]+) import", re.MULTILINE)
 _SMALL, _LARGE = 40, 400  # lines
