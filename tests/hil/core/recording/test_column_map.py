@@ -297,3 +297,13 @@ def test_a_map_undoes_what_another_tool_did(
 def test_a_key_that_stands_twice_is_refused() -> None:
     with pytest.raises(BadInputError, match="unit stands twice"):
         column_map(["motor_speed_rad_s=n, unit=rpm, unit=rad/s"])
+
+
+def test_a_range_that_its_cells_exceed_is_no_range_of_a_counter(tmp_path: Path) -> None:
+    with pytest.raises(BadInputError, match="wraps is 100, its cells go from"):
+        read(tmp_path, TABLE, *OPTIONS[:2], "motor_speed_rad_s=n_EM, unit=rpm, wraps=100")
+
+
+def test_a_pace_that_the_column_of_time_contradicts_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(BadInputError, match="the column of time goes over"):
+        read(tmp_path, TABLE, "time_s=t, unit=ms, every_s=0.002", *OPTIONS[1:])
