@@ -76,5 +76,5 @@ def test_the_last_samples_of_a_segment_do_not_decide() -> None:
     """Beyond the segment another request acts, so that the filter has nothing to go on there."""
     speed = 8.0 + 0.2 * np.maximum(TIME - STEP.step_s, 0.0)
     known = Jerk().compute(recording_of(TIME, vehicle_speed_m_s=speed), STEP)
-    bent = speed + 0.01 * (TIME > STEP.end_s - 4.5 * SAMPLE_TIME_S)  # 67 m/s³, were they to count
+    bent = speed + 0.01 * (STEP.end_s - 4.5 * SAMPLE_TIME_S < TIME)  # 67 m/s³, were they to count
     assert Jerk().compute(recording_of(TIME, vehicle_speed_m_s=bent), STEP) == pytest.approx(known, rel=1e-6)
