@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 import benches
 import test_plans
@@ -20,6 +21,7 @@ from hil.core.model import EffectUse, Model, load_model
 from hil.fmu import Axle
 
 ASKED_NM, SPEED_M_S, STEP_S, END_S = 200.0, 10 / 3.6, 1.0, 11.0
+Array = npt.NDArray[np.float64]
 ROAD = {"peak_nm": 3000.0, "sliding_nm": 2400.0, "patch_friction": 0.04, "patch_length_m": 2.0}
 CONTROLLERS = Path(test_plans.__file__).parent / "library" / "controllers"
 
@@ -45,14 +47,20 @@ def slippery_axle() -> Model:
     return Model(shipped.kind, shipped.parameters, (friction,))
 
 
+def on_the_road(model: Model, controller: str, end_s: float) -> tuple[Axle, Array, Array]:
+    """An axle at speed, with a shipped controller by name ('': none); times in s, torque that is asked."""
+    file = load_controller(CONTROLLERS / f"{controller}.toml") if controller else None
+    time_s = np.arange(0.0, end_s, 1e-3)
+    asked_nm = ASKED_NM if controller else ASKED_NM / model.parameters["gear_ratio"]
+    axle = Axle(model, file, initial_speed_m_s=SPEED_M_S)
+    return axle, time_s, np.where(time_s >= STEP_S, asked_nm, 0.0)
+
+
 def ride(controller: str) -> Ride:
     """A step on that road, by a shipped controller's name; '' without one."""
     model = slippery_axle()
-    file = load_controller(CONTROLLERS / f"{controller}.toml") if controller else None
-    axle = Axle(model, file, initial_speed_m_s=SPEED_M_S)
-    time_s = np.arange(0.0, END_S, 1e-3)
-    asked = ASKED_NM if controller else ASKED_NM / model.parameters["gear_ratio"]
-    out = axle.play(np.where(time_s >= STEP_S, asked, 0.0))
+    axle, time_s, asked_nm = on_the_road(model, controller, END_S)
+    out = axle.play(asked_nm)
     shaft = out["shaft_torque_nm"][time_s >= STEP_S + 0.5]
     slip = out["wheel_speed_rad_s"] - out["vehicle_speed_m_s"] / model.wheel_radius_m
     return Ride(float(shaft.min()), float(shaft.max()), float(slip.max()))

@@ -13,13 +13,11 @@ from pathlib import Path
 import numpy as np
 
 import benches
-from benchmarks.low_friction import CONTROLLERS, SPEED_M_S, STEP_S
-from hil.core.controller import load_controller
+from benchmarks.low_friction import on_the_road
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model, load_model
-from hil.fmu import Axle
 
-ASKED_NM, END_S, TRACK_M = 200.0, 7.0, 1.5
+END_S, TRACK_M = 7.0, 1.5
 ROAD = {"peak_nm": 3000.0, "sliding_nm": 2400.0}
 SHAFT_LIMIT_NM = 600.0  # of each side, on the shipped benches
 
@@ -47,11 +45,8 @@ def split_axle(differential_friction_nm: float) -> Model:
 def ride(controller: str, differential_friction_nm: float) -> Ride:
     """A step on that road, by a shipped controller's name; '' without one."""
     model = split_axle(differential_friction_nm)
-    file = load_controller(CONTROLLERS / f"{controller}.toml") if controller else None
-    axle = Axle(model, file, initial_speed_m_s=SPEED_M_S)
-    time_s = np.arange(0.0, END_S, 1e-3)
-    asked = ASKED_NM if controller else ASKED_NM / model.parameters["gear_ratio"]
-    sides = axle.play_sides(np.where(time_s >= STEP_S, asked, 0.0))
+    axle, _, asked_nm = on_the_road(model, controller, END_S)
+    sides = axle.play_sides(asked_nm)
     shafts, wheels, roads = sides["shaft_torque_nm"], sides["wheel_speed_rad_s"], sides["dyno_torque_nm"]
     yaw = 0.5 * TRACK_M * np.abs(roads[:, 0] - roads[:, 1]) / model.wheel_radius_m
     return Ride(

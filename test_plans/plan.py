@@ -71,7 +71,9 @@ class Plan(PlanKeys):
         taken = {one.id for one in self.criteria}
         found = self.device.criteria(self.segments)
         return tuple(
-            one.model_copy(update={"id": one.id.replace(".", ".device_", 1)}) if one.id in taken else one
+            one.model_copy(update={"id": f"{one.segment}.device_{one.id.removeprefix(f'{one.segment}.')}"})
+            if one.id in taken
+            else one
             for one in found
         )
 

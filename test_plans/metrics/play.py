@@ -132,10 +132,10 @@ class PlayCrossings(_Passage):
 
     def compute(self, recording: Recording, segment: Segment) -> float:
         """The number; NotReachedError where no flank is met firmly at all."""
-        _, torque = self.samples(recording, segment)
-        if np.max(np.abs(torque)) < self._firm(segment):
+        (time, torque), firm_nm = self.samples(recording, segment), self._firm(segment)
+        if np.max(np.abs(torque)) < firm_nm:
             raise NotReachedError(f"{self.channel} meets no flank firmly in the window")
-        return float(sum(one.left_s is not None for one in self.contacts(recording, segment)))
+        return float(sum(one.left_s is not None for one in contacts(time, torque, firm_nm)))
 
 
 class Clunk(_InPlay):

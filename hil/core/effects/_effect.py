@@ -130,7 +130,8 @@ class Effect:
             by a diagnosis where the effect as it is leaves more than noise, fitted in every other way.
         least: the smallest size worth naming; None: any that the data prove.
         needs_reversals: recordings in which the axle always turns one way hide it.
-        together: why its values make no sense with the other effects of a model, by id; '' where they do.
+        together: why its values make no sense with the other effects of a model, by id, and the remedy; None
+            where they do.
         derived: numbers that users know beside the fitted ones: of its values, name (with its unit): number.
     """
 
@@ -156,7 +157,9 @@ class Effect:
     least: Least | None = None
     needs_reversals: bool = False
     derived: Callable[[Mapping[str, float]], Mapping[str, float]] | None = None
-    together: Callable[[Mapping[str, Any], Mapping[str, Mapping[str, Any]]], str] | None = None
+    together: (
+        Callable[[Mapping[str, Any], Mapping[str, Mapping[str, Any]]], tuple[str, str] | None] | None
+    ) = None
     source: str = ""
 
     def parameter(self, name: str) -> Parameter:

@@ -16,15 +16,14 @@ from hil.core.effects._effect import Effect, Parameter, Stage
 from hil.core.effects._law import Law
 
 
-def _together(values: Mapping[str, Any], others: Mapping[str, Mapping[str, Any]]) -> str:
+def _together(values: Mapping[str, Any], others: Mapping[str, Mapping[str, Any]]) -> tuple[str, str] | None:
     apart = values["friction_left"] != 1.0 or values["friction_right"] != 1.0
     if apart and not others.get("tyre_friction", {}).get("peak_nm"):
         return (
-            "friction_left and friction_right are shares of what 'tyre_friction' has, "
-            "and the model has none: "
-            'add [[effects]] id = "tyre_friction" with a peak_nm above 0'
+            "friction_left and friction_right are shares of what 'tyre_friction' has, and the model has none",
+            'add [[effects]] id = "tyre_friction" with a peak_nm above 0',
         )
-    return ""
+    return None
 
 
 EFFECT = Effect(

@@ -49,13 +49,11 @@ def _remember(before: Motion, after: Motion, chain: Chain, travel: float, values
     return travel + 0.5 * h * (before.vehicle_speed + after.vehicle_speed)
 
 
-def _together(values: Mapping[str, Any], others: Mapping[str, Mapping[str, Any]]) -> str:
+def _together(values: Mapping[str, Any], others: Mapping[str, Mapping[str, Any]]) -> tuple[str, str] | None:
     if 0.0 < values["peak_nm"] < values["sliding_nm"]:
-        return (
-            f"sliding_nm is {values['sliding_nm']:g} N m, above peak_nm, {values['peak_nm']:g}: "
-            "a tyre that slides holds no more than its peak"
-        )
-    return ""
+        what = f"sliding_nm is {values['sliding_nm']:g} N m, above peak_nm, {values['peak_nm']:g}"
+        return what, "a tyre that slides holds no more than its peak: give a sliding_nm of at most peak_nm"
+    return None
 
 
 EFFECT = Effect(

@@ -209,11 +209,10 @@ def _check_together(uses: list[EffectUse], mistakes: Mistakes) -> None:
     others = {use.id: use.values for use in uses}
     for number, use in enumerate(uses, 1):
         together = EFFECTS[use.id].together
-        why = together(use.values, others) if together is not None else ""
-        if why:
+        senseless = together(use.values, others) if together is not None else None
+        if senseless is not None:
             with mistakes.of(f"effects[{number}]"):
-                what, _, fix = why.partition(": ")
-                raise BadInputError(f"'{use.id}': {what}", fix=fix)
+                raise BadInputError(f"'{use.id}': {senseless[0]}", fix=senseless[1])
 
 
 def _effect(entry: Mapping[str, Any], kind: str, others: list[EffectUse]) -> EffectUse:
