@@ -19,7 +19,7 @@ import numpy as np
 
 from hil.core.channels import TIME
 from hil.core.recording import read_recording
-from hil.engine.run.disk_room import needed_bytes
+from hil.engine.run.preflight import needed_bytes
 from test_plans import load_plan
 
 HOURS, HOUR_S, LOOK_S = 10.0, 3600.0, 5.0

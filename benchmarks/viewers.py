@@ -30,7 +30,7 @@ import psutil
 from benchmarks.requests import requests_of
 from benchmarks.standstills import Standstills, looking
 from hil.api_schemas.api import OVER
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from hil.core.result import PeriodicRequests, RunResult
 from tests.hil.cli.test_sim_bench import serving
 from tests.hil.service.served import Served, served

@@ -29,7 +29,7 @@ from drivers.samples import Counting, SampleQueue, Samples, SampleSource, Stream
 from drivers.serial_line import SerialLine
 from drivers.table import Connections, DeviceTable, File, LoadTable, Name, VehicleParameters
 from drivers.wire import Wire
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 
 #: Kinds of device that come with the project; others come by entry point.
 OWN_KINDS: tuple[tuple[str, type[DeviceTable]], ...] = (

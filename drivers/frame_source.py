@@ -9,8 +9,7 @@ import numpy as np
 
 from drivers.newest_frames import least_bytes
 from drivers.samples import Counting, Samples, Stream
-from hil.core.can.checksum import crc8_of
-from hil.core.can.frames import ERROR_FRAME, EXTENDED, FrameBlock
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, FrameBlock, crc8_of
 from hil.core.can.signals import Signal, bits_at, number_at
 from hil.core.runtime.compiled import compiled
 
@@ -49,7 +48,7 @@ class FrameSource:
 
     The streams are in the order in which the bindings name their frames first; a frame that only counts is
     the last, without channels. Frames of a bus without `counted_by` have the times at which they came.
-    `checked` are frames by identifier with the signal of their checksum (`hil.core.can.checksum`, byte 7):
+    `checked` are frames by identifier with the signal of their checksum (`hil.core.can.frames`, byte 7):
     one whose checksum is not that of its content is left out.
     """
 

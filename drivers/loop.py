@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from drivers.wire import Wire
 from hil.core.can.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from hil.core.errors import InterruptError
 from hil.core.runtime.clock import Clock
 from hil.core.runtime.compiled import compiled

@@ -13,7 +13,7 @@ from hil.analysis.control_design import (
     LEAST_PHASE_MARGIN_DEG,
     Design,
 )
-from hil.core.conventions import COMFORT_BAND_HZ
+from hil.core.channels import COMFORT_BAND_HZ
 from reports import quantities
 from reports.drawings import Drawing
 from reports.figure import Band, Figure, Level, Trace

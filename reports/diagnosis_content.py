@@ -17,7 +17,7 @@ from hil.analysis.diagnosis import (
 )
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
-from hil.core.errors.digits import multiple, share
+from hil.core.errors.wording import multiple, share
 from hil.core.model import parameter_unit
 from reports import quantities
 from reports.diagnosis_figures import WINDOW_S, overlay_figures, shown_overlay

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hil.analysis.comparison import ComparedRun, difference
-from hil.core.conventions import COMFORT_BAND_HZ
+from hil.core.channels import COMFORT_BAND_HZ
 from hil.core.result import Segment
 from reports import quantities, style
 from reports.figure import Band, Figure, Trace

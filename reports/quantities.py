@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import re
 
-from hil.core.errors.digits import factor as plain_factor
-from hil.core.errors.digits import share as plain_share
+from hil.core.errors.wording import factor as plain_factor
+from hil.core.errors.wording import share as plain_share
 
 THIN = "\u202f"  # narrow no-break space
 MINUS = "\u2212"
@@ -42,7 +42,7 @@ def number(value: float | None, decimals: int | None = None, significant: int = 
 
 
 def share(value: float | None, decimals: int = 1, *, digits: int = 1, signed: bool = False) -> str:
-    """A share in percent, from ten on a multiple (`hil.core.errors.digits`); a dash for None and NaN."""
+    """A share in percent, from ten on a multiple (`hil.core.errors.wording`); a dash for None and NaN."""
     if value is None or math.isnan(value):
         return DASH
     text = plain_share(value, decimals, digits=digits, signed=signed)

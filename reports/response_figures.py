@@ -9,8 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.frequency_response import FrequencyResponse
-from hil.core.channels import CHANNELS, INPUT
-from hil.core.conventions import COMFORT_BAND_HZ
+from hil.core.channels import CHANNELS, COMFORT_BAND_HZ, INPUT
 from reports import quantities
 from reports.figure import Band, Figure, Trace
 from reports.labels import Label, channel_label

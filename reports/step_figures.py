@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hil.core.conventions import COMFORT_BAND_HZ
+from hil.core.channels import COMFORT_BAND_HZ
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, Segment
 from reports import quantities, style

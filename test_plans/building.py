@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
 from hil.core.errors import BadInputError
-from hil.core.errors.table_mistakes import needed
+from hil.core.errors.mistakes import needed
 from hil.core.errors.wording import closest, did_you_mean
 from test_plans.mistakes import plan_error
 from test_plans.yaml_document import Document, KeyPath

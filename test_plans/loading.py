@@ -9,8 +9,7 @@ from typing import Any
 
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import closest, did_you_mean
-from hil.core.files.kinds import refuse_other_kind
-from hil.core.files.toml_file import parse_toml
+from hil.core.files.toml_file import parse_toml, refuse_other_kind
 from test_plans.building import build, list_at, mapping_at
 from test_plans.choices import Choices
 from test_plans.conductor import PlannedSegment

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from hil.core.files.kinds import FORMAT, FormatNumber
+from hil.core.files.toml_file import FORMAT, FormatNumber
 from hil.core.result import VariableValue
 from test_plans.building import Strict
 from test_plans.conductor import PlannedSegment

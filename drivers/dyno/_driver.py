@@ -26,7 +26,7 @@ from drivers.frame_source import CountedBy, FrameSource
 from drivers.loop import BusLoop
 from drivers.table import VehicleParameters
 from drivers.wire import Wire
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from hil.core.errors import BenchError, DeviceError
 
 SPEED_MODE, VEHICLE_MODE = 3, -1

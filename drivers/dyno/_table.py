@@ -13,7 +13,7 @@ from drivers.dyno._driver import DynoDriver, DynoNodes
 from drivers.dyno._node import identifiers_of, read_dyno
 from drivers.table import Connections, File, LoadTable, Name
 from hil.core.can.frames import most_frame_bits
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from hil.core.errors import BadInputError
 
 _REAR = ("rear_left", "rear_right")

@@ -15,11 +15,11 @@ from drivers.newest_frames import NewestFrames
 from drivers.rmcu._damage import FrameDamage, has_checksum
 from drivers.rmcu._parameters import parameters_of
 from drivers.wire import Wire
-from hil.core.can.checksum import crc8, crc8_many
 from hil.core.can.dbc import Dbc, Names, Needed, read_dbc
+from hil.core.can.frames import crc8, crc8_many
 from hil.core.can.signals import FrameLayout, Payloads
+from hil.core.channels import TICK_S
 from hil.core.controller import Controller
-from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError, BenchError, DeviceError
 from hil.core.errors.wording import printable
 

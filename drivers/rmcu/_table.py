@@ -11,7 +11,7 @@ from drivers.rmcu._driver import RMCU_SIGNALS, RmcuDriver, read_rmcu
 from drivers.table import Connections, DeviceTable, File
 from hil.core.can.dbc import Names
 from hil.core.can.frames import most_frame_bits
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable
 

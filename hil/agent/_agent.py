@@ -13,10 +13,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from hil.agent._bench import DrivenBench
-from hil.agent._deliveries import Deliveries
-from hil.agent._forecasting import Forecasting
-from hil.agent._kept_runs import KeptRun, KeptRuns
+from hil.agent._bench import DrivenBench, Forecasting
+from hil.agent._kept_runs import Deliveries, KeptRun, KeptRuns
 from hil.agent._service import AwayError, TheService
 from hil.api_schemas.agent import AgentOrders, AgentReport, RunEnding, TakenRun
 from hil.client import RefusedError

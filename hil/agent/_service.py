@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from hil.client import Client, RefusedError
 from hil.core.errors import BenchError
-from hil.execution.daemon_thread import apart
+from hil.execution.background import apart
 
 T = TypeVar("T")
 _LATER = (408, 429, 500, 502, 503, 504)

@@ -17,7 +17,7 @@ from hil.core.errors.extras import not_installed
 from hil.core.errors.mistakes import all_of
 from hil.core.model import load_model
 from hil.engine import DEFAULT_BENCH, BenchFile, load_bench
-from hil.engine.bench.calibration_dates import accepted_expiry
+from hil.engine.bench.bench_channels import accepted_expiry
 from hil.engine.bench.measured import refuse_unmeasured
 from hil.engine.prediction.batch_prediction import controller_files
 from hil.engine.prediction.forecast import Forecast, forecast

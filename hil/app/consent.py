@@ -6,7 +6,7 @@ from hil.app.feedback import Feedback
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable
 from hil.engine import BenchFile
-from hil.engine.prediction.envelope import Envelope
+from hil.engine.prediction.forecast import Envelope
 from hil.engine.run.preflight import Rehearsal
 from test_plans import Plan
 

@@ -20,7 +20,7 @@ from hil.app.requests import ExplainRequest
 from hil.app.result_file import Outcome, json_file
 from hil.app.results_folder import results_in
 from hil.core.errors import BadInputError
-from hil.core.files.kinds import FORMAT
+from hil.core.files.toml_file import FORMAT
 from hil.core.model import Model, load_model
 from hil.engine import BenchFile, StopRequest, load_bench
 from hil.engine.prediction.prediction import predict

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from hil.core.conventions import ENDING_SIGNALS
+from hil.core.channels import ENDING_SIGNALS
 
 if TYPE_CHECKING:
     from hil.engine import StopRequest

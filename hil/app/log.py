@@ -16,7 +16,7 @@ from collections import deque
 from collections.abc import Sequence
 from pathlib import Path
 
-from hil.core.conventions import PACKAGES
+from hil.core.channels import PACKAGES
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable
 from hil.core.files import of_the_system, refuse_special

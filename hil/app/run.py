@@ -21,7 +21,7 @@ from hil.core.result import RunResult
 from hil.engine import RECORDING, BenchFile, RunOutcome, RunRequest, StopRequest
 from hil.engine import execute as carry_out_run
 from hil.engine.ipc.ipc import analysed_apart
-from hil.engine.run.disk_room import remark_on_room
+from hil.engine.run.preflight import remark_on_room
 from reports import HTML, JUNIT, PDF, write_documents, write_junit
 from test_plans import Plan
 

@@ -17,7 +17,7 @@ from hil.core.files import write_atomically
 from hil.core.result import RunResult
 from hil.engine import BenchFile
 from hil.engine.bench.bench_file import with_seed
-from hil.engine.run.disk_room import needed_bytes, refuse_too_little_room
+from hil.engine.run.preflight import needed_bytes, refuse_too_little_room
 from reports.series_report import SERIES_HTML, series_html
 from test_plans import Plan, estimate_duration_s
 

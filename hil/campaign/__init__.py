@@ -1,11 +1,20 @@
 """Campaigns: many simulations of a plan, in this process or on dask.distributed, resumed where they were."""
 
-from hil.campaign._batches import BATCH_S, Batch, Carriers, Here, Kept, MakeRows, Row, batch_size
-from hil.campaign._execute import Progress, execute
-from hil.campaign._parts import FOLDER, STARTED, Parts, begun_batch, write_begun
+from hil.campaign._execute import (
+    BATCH_S,
+    Batch,
+    Carriers,
+    Here,
+    Kept,
+    MakeRows,
+    Progress,
+    Row,
+    batch_size,
+    execute,
+)
 from hil.campaign._setting import Setting, Source, load_setting
 from hil.campaign._simulations import Simulations
-from hil.campaign._table import Tally, write_table
+from hil.campaign._table import FOLDER, STARTED, Parts, Tally, begun_batch, write_begun, write_table
 
 __all__ = [
     "BATCH_S",

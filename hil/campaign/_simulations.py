@@ -11,7 +11,7 @@ from typing import TypeVar
 
 from hil.analysis.campaigns import Case, inputs_of, varied
 from hil.analysis.tuning import Draw, draws_of, with_values
-from hil.campaign._batches import Row
+from hil.campaign._execute import Row
 from hil.campaign._setting import Setting
 from hil.core.channels import CHANNELS
 from hil.core.controller import Controller, load_controller

@@ -16,7 +16,7 @@ from collections import deque
 from collections.abc import Iterator
 from typing import Any
 
-from hil.campaign._batches import Batch, Done, MakeRows, Row
+from hil.campaign._execute import Batch, Done, MakeRows, Row
 from hil.campaign._setting import Setting, load_setting
 from hil.campaign._simulations import Simulations
 from hil.core.errors import BadInputError, BenchError, HilError

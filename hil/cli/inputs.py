@@ -13,7 +13,7 @@ from hil.cli.streams import complain
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable
 from hil.engine import DEFAULT_BENCH
-from hil.engine.bench.found_bench import folders_of, found_bench, refuse_hardware
+from hil.engine.bench.bench_file import folders_of, found_bench, refuse_hardware
 from test_plans import Choices, controller_choices
 from test_plans.yaml_document import FLOAT
 

@@ -17,8 +17,7 @@ from hil.app.log import LOG
 from hil.app.result_file import to_json
 from hil.cli.streams import complain
 from hil.cli.terminal import KEYS, operators_terminal
-from hil.core.errors.digits import share
-from hil.core.errors.wording import printable
+from hil.core.errors.wording import printable, share
 from hil.core.result import AcceptedExpiry, CriterionResult, CriterionVerdict, Identity
 
 logger = logging.getLogger(__name__)

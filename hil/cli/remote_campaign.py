@@ -25,7 +25,7 @@ from hil.client.retry import OURS, Retry
 from hil.core.errors import BadInputError, BenchError, InterruptError
 from hil.core.files import is_file, make_directory, read_text, write_atomically
 from hil.engine import StopRequest
-from hil.execution.files import files_of
+from hil.execution.data_folder import files_of
 from reports import HTML, PDF
 from reports.outputs.campaign import OWN, share_in_words
 from test_plans import load_plan

@@ -8,7 +8,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from hil.core.errors import StopWay
-from hil.core.files.kinds import FORMAT, FormatNumber
+from hil.core.files.toml_file import FORMAT, FormatNumber
 
 #: `done`: executed, and no criterion of the plan has a limit.
 Verdict = Literal["pass", "fail", "error", "done"]

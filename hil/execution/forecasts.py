@@ -16,7 +16,7 @@ from hil.core.errors import BadInputError, BenchError
 from hil.core.files import read_bytes
 from hil.engine import BenchFile
 from hil.execution.background import FORECAST_BYTES, start_process
-from hil.execution.files import files_of
+from hil.execution.data_folder import files_of
 from test_plans import Plan
 
 _AT_ONCE = 1  # a run needs the other processor

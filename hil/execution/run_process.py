@@ -14,7 +14,7 @@ from hil.core.result import RunResult
 from hil.engine.ipc.ipc_messages import EmergencyAsked, Message, RunAsked, Typed, from_line, to_line
 from hil.engine.run.operator import END, PAUSE, RESUME
 from hil.execution.background import start_process
-from hil.execution.files import LOCK
+from hil.execution.data_folder import LOCK
 
 RESULT = "result.json"
 _LONGEST_LINE = 1 << 24

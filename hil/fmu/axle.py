@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 from drivers import parameters_of
 from hil.core.can.signals import Signal
+from hil.core.channels import TICK_S
 from hil.core.controller import Controller
-from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError
 from hil.core.model import Model, refuse_without_vehicle
 from hil.plant.closed_loop import SIDES, ClosedLoop, Wire

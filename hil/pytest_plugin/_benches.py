@@ -26,7 +26,7 @@ def refuse_unnamed_hardware(config: pytest.Config, found: str) -> None:
     BadInputError: a bench.toml that no option names describes hardware.
     """
     if not config.getoption("--bench") and not config.getini("hil_bench"):
-        from hil.engine.bench.found_bench import refuse_hardware
+        from hil.engine.bench.bench_file import refuse_hardware
 
         refuse_hardware(Path(found))
 

@@ -8,7 +8,7 @@ import hashlib
 import time
 from collections.abc import Callable, Mapping
 
-from hil.execution.daemon_thread import apart
+from hil.execution.background import apart
 from hil.service.stop_post import Owner, StopPost
 from hil.service.store import DatabaseAwayError, TokenStore
 

@@ -19,7 +19,7 @@ from hil.api_schemas.agent import TakenRun
 from hil.api_schemas.api import BenchState, RunData
 from hil.core.errors import BenchError, HilError
 from hil.execution.benches import Bench
-from hil.execution.files import folder_of
+from hil.execution.data_folder import folder_of
 from hil.execution.run_execution import RunEnd, RunExecution, RunningRun, end_of_left
 from hil.execution.run_process import alive_in
 from hil.service.stop_post import StopPost

@@ -17,9 +17,9 @@ from sqlalchemy import Engine
 from hil.api_schemas.api import OVER, BenchData, BenchState, ForecastData, Me, RunData
 from hil.api_schemas.campaign import CampaignData
 from hil.api_schemas.study import StudyData
+from hil.execution.background import apart
 from hil.execution.benches import Bench
-from hil.execution.daemon_thread import apart
-from hil.execution.files import files_in
+from hil.execution.data_folder import files_in
 from hil.execution.forecasts import Forecasts
 from hil.execution.run_execution import RunningRun
 from hil.service.agents.agents import Agents

@@ -20,8 +20,8 @@ from hil.api_schemas.api import ROLES, Role, TokenMade
 from hil.core.errors import BadInputError, BenchError
 from hil.core.errors.wording import printable
 from hil.engine import StopRequest
+from hil.execution.background import going_on
 from hil.execution.benches import benches_of
-from hil.execution.daemon_thread import going_on
 from hil.execution.data_folder import alone_in, make_private, name_in
 from hil.service.api import Guarding, Rates, StopAddress, application, bounded
 from hil.service.archive import Archive

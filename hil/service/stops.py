@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hil.engine.ipc.ipc_messages import EmergencyAsked
+from hil.execution.background import apart
 from hil.execution.benches import Bench
-from hil.execution.daemon_thread import apart
 from hil.service.stop_post import Stopped, StopPost
 from hil.service.store import DatabaseAwayError, in_turns
 

@@ -10,7 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from hil.core.conventions import COMFORT_BAND_HZ
+from hil.core.channels import COMFORT_BAND_HZ
 from reports import style
 
 BLUE, VERMILLION, GREEN, PURPLE = (style.SERIES[r].light for r in ("gain", "phase", "third", "fourth"))

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from hil.analysis.campaigns import Findings, OfController, OfCriterion, Share, Worst
-from hil.core.errors.digits import share as percent
+from hil.core.errors.wording import share as percent
 
 QUANTILES = (0.01, 0.05, 0.5, 0.95, 0.99)
 OWN = "the plan's own"

@@ -11,7 +11,7 @@ import numpy as np
 from hil.analysis.control_design import Design, measured_loop
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.core.controller import controller_to_toml
-from hil.core.files.kinds import FORMAT
+from hil.core.files.toml_file import FORMAT
 from reports import drawings as figures
 
 

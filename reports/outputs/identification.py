@@ -13,8 +13,8 @@ from hil.analysis.frequency_response import Experiment, frf_to_csv
 from hil.analysis.identification import CHAINS, Identification
 from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError
-from hil.core.errors.digits import share
-from hil.core.files.kinds import FORMAT
+from hil.core.errors.wording import share
+from hil.core.files.toml_file import FORMAT
 from hil.core.model import model_to_toml
 from reports import drawings as figures
 

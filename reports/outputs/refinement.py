@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from hil.analysis.tuning import RefinedRun, Refinement
-from hil.core.errors.digits import share
+from hil.core.errors.wording import share
 
 
 def refinement_summary(found: Refinement, asked: Mapping[str, Any]) -> dict[str, Any]:

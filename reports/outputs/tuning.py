@@ -19,7 +19,7 @@ from hil.analysis.tuning import (
     within_hard_limits,
 )
 from hil.core.controller import Controller, controller_to_toml
-from hil.core.errors.digits import share
+from hil.core.errors.wording import share
 from hil.core.result import Segment
 from reports import drawings
 

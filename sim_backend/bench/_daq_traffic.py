@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from hil.core.can.frames import FRAME, FrameBlock, empty_block, longest_frame_s
 from hil.core.can.xcp import MOST_BYTES
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from sim_backend.rmcu import STAMP_BYTES, STAMP_TICK_S, DaqList, RmcuMemory
 
 _STAMP_TURN = 1 << 8 * STAMP_BYTES

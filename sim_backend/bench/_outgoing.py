@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hil.core.can.frames import FrameBlock, empty_block, frames, joined
 from hil.core.can.signals import FrameLayout
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from hil.core.errors import BadInputError
 from hil.plant.closed_loop import tick as T
 from sim_backend.bench._daq_traffic import DaqTraffic

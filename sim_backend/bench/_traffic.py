@@ -7,10 +7,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.can.checksum import crc8_of
-from hil.core.can.frames import FRAME, FrameBlock, longest_frame_s
+from hil.core.can.frames import FRAME, FrameBlock, crc8_of, longest_frame_s
 from hil.core.can.signals import FrameLayout, payload_with
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from hil.core.runtime.compiled import compiled
 
 #: A frame with the column of a bench row that each of its signals shows.

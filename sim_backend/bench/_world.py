@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hil.core.can.dbc import Names, read_dbc
 from hil.core.can.frames import FrameBlock, longest_frame_s
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from hil.core.errors import BadInputError
 from hil.plant.closed_loop import Noise, advance, state_at_rest
 from hil.plant.closed_loop import drive as drive

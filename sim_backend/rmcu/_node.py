@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.can.dbc import Dbc, Needed
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from hil.plant.controller import memory as M
 from hil.plant.controller import parameters
 from sim_backend.rmcu import _requests as R

@@ -5,7 +5,7 @@ The state is two arrays, so that Python and compiled code change the same one.
 
 from __future__ import annotations
 
-from hil.core.can.checksum import crc8_of
+from hil.core.can.frames import crc8_of
 from hil.core.can.signals import bits_at, number_at
 from hil.core.runtime.compiled import compiled
 from hil.plant.controller.memory import DRIVING_FORCE, FAULT, OFF, TORQUE

@@ -33,7 +33,7 @@ from hil.core.can.xcp import (
     cycle_and_unit,
     time_stamp_mode,
 )
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from sim_backend.rmcu._memory import RmcuMemory
 
 STAMP_BYTES, STAMP_TICK_S = 2, 1e-4

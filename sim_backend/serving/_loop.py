@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from hil.core.can.frames import FrameBlock
-from hil.core.conventions import TICK_S
-from hil.core.runtime.real_time import undisturbed
+from hil.core.channels import TICK_S
+from hil.core.runtime.clock import undisturbed
 from sim_backend.bench import SimulatedBench
 
 _LONGEST_CATCH_UP_S = 0.5  # a host that was held up as well goes on after no longer a pause

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from test_plans.building import Strict
 from test_plans.conductor import Conductor, PlannedSegment
 from test_plans.pace import Outlook, Pace

@@ -21,7 +21,7 @@ import can
 import numpy as np
 import pytest
 
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from hil.core.recording import read_frames, read_recording
 from hil.engine import BenchFile, RunOutcome, RunRequest, load_bench, run_plan
 from tests.benches_for_tests import SIM, plan

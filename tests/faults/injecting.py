@@ -16,8 +16,7 @@ import can
 import numpy as np
 
 from drivers import read_rmcu
-from hil.core.can.checksum import crc8_many
-from hil.core.can.frames import EXTENDED, FrameBlock, empty_block, frames, joined
+from hil.core.can.frames import EXTENDED, FrameBlock, crc8_many, empty_block, frames, joined
 from hil.core.can.signals import Payloads
 from sim_backend.bench import RMCU_BUS, Fault, SensorFault
 from tests.benches_for_tests import SIM

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.can.frames import FrameBlock
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from hil.plant.closed_loop import tick as T
 from sim_backend.bench import RMCU_BUS, SimulatedBench
 from sim_backend.can_interface import prepare

@@ -20,8 +20,7 @@ from hil.core.can.dbc_messages import keys_of
 from hil.core.can_logs import CanLog, read_can_log
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
-from hil.core.recording._mdf import read_mdf
-from hil.core.recording.mdf_file import open_mdf
+from hil.core.recording.mdf import open_mdf, read_mdf
 from hil.engine.replay._counts import counted
 from tests.readers import tools
 

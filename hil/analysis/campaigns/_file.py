@@ -13,7 +13,7 @@ from hil.analysis.tuning import Tolerance
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import did_you_mean
 from hil.core.files import is_file
-from hil.core.files.kinds import FORMAT, FormatNumber
+from hil.core.files.toml_file import FORMAT, FormatNumber
 from test_plans.building import Strict, brief, build, mapping_at
 from test_plans.loading import LIBRARY
 from test_plans.mistakes import PlanMistakes

@@ -34,7 +34,7 @@ from hil.analysis.control_design._plant import DesignPlant, design_plant, resona
 from hil.analysis.control_design._spec import Design, DesignSpec, Loop, Robustness
 from hil.analysis.control_design._trade_off import TradeOff, trade_off
 from hil.analysis.control_design._uncertainty import PlantSet, possible_plants
-from hil.core.conventions import COMFORT_BAND_HZ
+from hil.core.channels import COMFORT_BAND_HZ
 
 __all__ = [
     "COMFORT_BAND_HZ",

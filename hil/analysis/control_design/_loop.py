@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.conventions import COMFORT_BAND_HZ
+from hil.core.channels import COMFORT_BAND_HZ
 from hil.core.model import TransferFunction
 
 Array = npt.NDArray[np.float64]

@@ -14,7 +14,7 @@ from hil.analysis.identification import transfer_functions_of
 from hil.core.channels import OUTPUTS
 from hil.core.controller import LARGEST_ORDER, Plant
 from hil.core.errors import BadInputError
-from hil.core.errors.table_mistakes import needed
+from hil.core.errors.mistakes import needed
 from hil.core.model import Model, TransferFunction, refuse_without_vehicle
 from hil.plant import refuse_too_stiff
 

@@ -15,9 +15,9 @@ from hil.analysis.control_design._optimize import MarginLimits, Objective, Optim
 from hil.analysis.control_design._plant import DesignPlant
 from hil.analysis.control_design._trade_off import TradeOff
 from hil.analysis.control_design._uncertainty import PlantSet
+from hil.core.channels import TICK_S
 from hil.core.controller import Controller
 from hil.core.controller.bounds import LARGEST_TORQUE_NM, SAMPLE_TIMES_S, SLOWEST_HZ
-from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError
 
 Array = npt.NDArray[np.float64]

@@ -10,8 +10,7 @@ import numpy.typing as npt
 
 from hil.analysis.frequency_response._quality import UnfitDataError
 from hil.analysis.plausible import refuse_implausible
-from hil.core.channels import INPUT, OUTPUTS, TIME
-from hil.core.conventions import TICK_S
+from hil.core.channels import INPUT, OUTPUTS, TICK_S, TIME
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording, run_of
 from hil.core.result import Segment

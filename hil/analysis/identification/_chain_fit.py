@@ -12,7 +12,7 @@ from hil.analysis.frequency_response import FrequencyResponse
 from hil.analysis.identification._chain import CHAINS, chain_response
 from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
-from hil.core.errors.digits import share
+from hil.core.errors.wording import share
 from hil.core.model import Model, parameter_names
 
 Array = npt.NDArray[np.float64]

@@ -15,9 +15,9 @@ import numpy.typing as npt
 from hil.analysis.frequency_response import FrequencyResponse, check_coherence
 from hil.analysis.identification._order import Candidate
 from hil.analysis.identification._rational_fit import Fit, expected_deviation, fit
-from hil.core.conventions import COMFORT_BAND_HZ
+from hil.core.channels import COMFORT_BAND_HZ
 from hil.core.errors import BadInputError
-from hil.core.errors.digits import share
+from hil.core.errors.wording import share
 
 Array = npt.NDArray[np.float64]
 Trust = Literal["linear", "doubtful"]

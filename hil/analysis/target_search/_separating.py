@@ -18,7 +18,7 @@ import yaml
 from hil.analysis.target_search._trial import Guess, Predicted, Trial
 from hil.core.channels import unit_of
 from hil.core.errors import HilError
-from hil.core.errors.digits import quantity
+from hil.core.errors.wording import quantity
 from test_plans import Plan, plan_from_text
 from test_plans.steps import SetController
 

@@ -11,8 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from hil.analysis.tuning._kept import KEPT
 from hil.analysis.tuning._parameters import ALTERNATIVES, PARAMETERS
 from hil.core.errors import BadInputError
-from hil.core.errors.mistakes import Mistake, keyed, refuse
-from hil.core.errors.table_mistakes import mistakes_of
+from hil.core.errors.mistakes import Mistake, keyed, mistakes_of, refuse
 from hil.core.errors.wording import did_you_mean
 from hil.core.files.toml_file import parse_toml, toml_text
 from hil.core.model import MODEL_KINDS

@@ -12,7 +12,7 @@ from concurrent.futures import ProcessPoolExecutor
 from types import TracebackType
 
 from hil.analysis.tuning._trial import Trial, Tried
-from hil.core.conventions import ENDING_SIGNALS
+from hil.core.channels import ENDING_SIGNALS
 from hil.core.runtime.other_process import end_with_parent
 
 Work = tuple[Mapping[str, float], int]

@@ -21,7 +21,7 @@ from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._trial import Trial, Tried
 from hil.analysis.tuning._trust_step import Promise, TrustStep
 from hil.core.controller import Controller
-from hil.core.errors.digits import share as percent
+from hil.core.errors.wording import share as percent
 from hil.core.result import CriterionResult
 
 Array = npt.NDArray[np.float64]

@@ -19,7 +19,7 @@ from hil.analysis.tuning._parameters import Space
 from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._trial import Tried
 from hil.analysis.tuning._trust_step import SAME
-from hil.core.errors.digits import share
+from hil.core.errors.wording import share
 
 Array = npt.NDArray[np.float64]
 

@@ -19,7 +19,7 @@ from hil.app.tuning.search_files import Search
 from hil.core.controller import controller_to_toml
 from hil.core.errors import BadInputError
 from hil.core.model import Model
-from hil.engine.prediction.envelope import envelope_of
+from hil.engine.prediction.forecast import envelope_of
 from hil.engine.prediction.prediction import predict
 from reports import HTML, PDF
 from reports.autotune_report import autotune_page

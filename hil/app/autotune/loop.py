@@ -16,7 +16,7 @@ from hil.app.tuning.bench_runs import WireBench
 from hil.app.tuning.refinement import Refined
 from hil.app.tuning.search_files import Search
 from hil.core.errors import HilError
-from hil.core.errors.digits import share
+from hil.core.errors.wording import share
 from hil.engine import RECORDING
 from reports.outputs.autotune import Closing, Decision, Stage, effects_in_words
 from reports.tuning_report import Shown

@@ -19,7 +19,7 @@ from hil.core.result import CriterionResult, Segment
 from hil.engine import RECORDING, BenchFile
 from hil.engine.bench.bench_file import with_seed
 from hil.engine.prediction.batch_prediction import BatchPrediction
-from hil.engine.prediction.envelope import Envelope, envelope_of
+from hil.engine.prediction.forecast import Envelope, envelope_of
 from hil.engine.prediction.prediction import Prediction
 from reports.tuning_report import Shown
 from test_plans import Choices, load_plan

@@ -11,7 +11,7 @@ from hil.cli.inputs import bench_or_own, named_numbers, request_of
 from hil.cli.options.controllers import Autotune
 from hil.cli.output import TERMINAL, console, plain_table, print_json
 from hil.core.errors import BadInputError
-from hil.core.errors.digits import share
+from hil.core.errors.wording import share
 from reports import HTML
 from reports.outputs.autotune import Closing, Decision, closing_verdict
 

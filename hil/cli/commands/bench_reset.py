@@ -7,7 +7,7 @@ from hil.cli.output import console, print_json
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import is_printable, printable, refuse_long
 from hil.engine import load_bench
-from hil.engine.bench.bus_identity import within_process
+from hil.engine.bench.bus_settings import within_process
 from hil.engine.stop.emergency_stop import reset
 
 

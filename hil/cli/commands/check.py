@@ -14,7 +14,7 @@ from hil.cli.inputs import bench_or_own, choices_of, request_of
 from hil.cli.options.runs import Check
 from hil.cli.output import TERMINAL, console, plain_table, print_criteria, print_json, warn
 from hil.core.channels import CHANNELS
-from hil.core.errors.digits import share
+from hil.core.errors.wording import share
 from hil.engine.prediction.forecast import Forecast
 
 if TYPE_CHECKING:

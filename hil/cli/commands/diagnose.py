@@ -12,7 +12,7 @@ from hil.app.requests import DiagnoseRequest
 from hil.cli.inputs import named_numbers, request_of
 from hil.cli.options.models import Diagnose
 from hil.cli.output import TERMINAL, print_json
-from hil.core.errors.digits import factor, share
+from hil.core.errors.wording import factor, share
 from reports.diagnosis_content import MOST_WORSE
 from reports.quantities import chance
 

@@ -11,7 +11,7 @@ from hil.core.controller import controller_schema
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import did_you_mean, printable
 from hil.core.model.schema import model_schema
-from hil.engine.bench.bench_schema import bench_schema
+from hil.engine.bench.bench_file import bench_schema
 from test_plans import plan_schema
 
 

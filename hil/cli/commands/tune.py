@@ -18,7 +18,7 @@ from hil.cli.options.controllers import Tune
 from hil.cli.output import TERMINAL, console, plain_table, print_json
 from hil.cli.streams import complain
 from hil.core.errors import BadInputError
-from hil.core.errors.digits import share
+from hil.core.errors.wording import share
 from reports.outputs.refinement import REFINEMENT_HEAD, refinement_rows, refinement_verdict
 from reports.outputs.tuning import text_of
 

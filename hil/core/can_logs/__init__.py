@@ -27,7 +27,7 @@ def read_can_log(path: Path, stamps: Stamps = "") -> CanLog:
     refuse_unless_regular(path)
     match path.suffix.lower():
         case ".mcap":
-            from hil.core.can_logs._own import read_own
+            from hil.core.can_logs._mdf import read_own
 
             log = read_own(path)
         case ".mf4":

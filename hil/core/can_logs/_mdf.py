@@ -1,7 +1,14 @@
-"""ASAM MDF bus logging, read by asammdf in whole columns."""
+"""Frames kept in recordings: ASAM MDF bus logging, and the project's own.
+
+ASAM MDF bus logging, read by asammdf in whole columns.
+
+Raw frames of a recording of the project's own.
+"""
 
 from __future__ import annotations
 
+import contextlib
+import datetime
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,7 +20,8 @@ import numpy.typing as npt
 from hil.core.can.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
 from hil.core.can_logs._log import LONG, LONGEST_DATA, REMOTE, CanLog, block_of, ordered
 from hil.core.errors import BadInputError
-from hil.core.recording.mdf_file import open_mdf
+from hil.core.recording import read_as_written, read_frames
+from hil.core.recording.mdf import open_mdf
 
 _DATA, _ERROR, _REMOTE = "CAN_DataFrame", "CAN_ErrorFrame", "CAN_RemoteFrame"  # ASAM MDF bus logging 1.0
 _EXTENDED_BIT = 0x8000_0000
@@ -131,3 +139,14 @@ class _Columns:
         lengths = self.get(length).astype(np.int64)
         payloads[np.arange(LONGEST_DATA) >= lengths[:, None]] = 0
         return lengths, payloads.view("<u8")[:, 0]
+
+
+def read_own(path: Path) -> CanLog:
+    """The frames of each bus; the bench clock is that of their stamps."""
+    recording = read_as_written(path)
+    began_ns = None
+    with contextlib.suppress(KeyError, ValueError):
+        moment = datetime.datetime.fromisoformat(recording.metadata["time"]["bench_clock_0_at"])
+        began_ns = round(moment.timestamp() * 1e3) * 1_000_000
+    frames = {bus: ordered(block) for bus, block in read_frames(path).items() if len(block)}
+    return CanLog(path, frames, began_ns, remarks=tuple(recording.damage))

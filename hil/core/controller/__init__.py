@@ -32,11 +32,9 @@ from hil.core.controller.bounds import (
     denominator_checked,
     too_fast,
 )
-from hil.core.errors.mistakes import Mistake, keyed, refuse
-from hil.core.errors.table_mistakes import mistakes_of
+from hil.core.errors.mistakes import Mistake, keyed, mistakes_of, refuse
 from hil.core.files import write_atomically
-from hil.core.files.kinds import FORMAT, FormatNumber, refuse_other_kind
-from hil.core.files.toml_file import parse_toml, toml_text
+from hil.core.files.toml_file import FORMAT, FormatNumber, parse_toml, refuse_other_kind, toml_text
 
 logger = logging.getLogger(__name__)
 

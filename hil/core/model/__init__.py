@@ -11,9 +11,8 @@ import tomli_w
 from hil.core.chain import WHEEL_RADIUS_M
 from hil.core.errors import BadInputError
 from hil.core.files import write_atomically
-from hil.core.files.kinds import FORMAT
 from hil.core.files.shipped import shipped_file
-from hil.core.files.toml_file import parse_toml, toml_text
+from hil.core.files.toml_file import FORMAT, parse_toml, toml_text
 from hil.core.model._reading import model_from_dict
 from hil.core.model._types import (
     LOAD_INPUTS,

@@ -11,7 +11,7 @@ from hil.core.effects import EFFECTS, finite_number, shown
 from hil.core.errors import BadInputError
 from hil.core.errors.mistakes import Mistakes
 from hil.core.errors.wording import closest, did_you_mean
-from hil.core.files.kinds import FORMAT, readable_format, refuse_other_kind
+from hil.core.files.toml_file import FORMAT, readable_format, refuse_other_kind
 from hil.core.model._types import (
     LOAD_INPUTS,
     MODEL_KINDS,

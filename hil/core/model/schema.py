@@ -7,7 +7,7 @@ from typing import Any
 
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS, SENSED, Effect
-from hil.core.files.kinds import FORMAT_SCHEMA
+from hil.core.files.toml_file import FORMAT_SCHEMA
 from hil.core.model import LOAD_INPUTS, MODEL_KINDS, WHEEL_RADII_M, parameter_names, parameter_unit
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"

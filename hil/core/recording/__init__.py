@@ -9,7 +9,16 @@ from hil.core.errors import BadInputError
 from hil.core.files import refuse_unless_regular
 from hil.core.recording._checked import checked
 from hil.core.recording._column_map import AS_NAMED, ColumnMap, column_map
-from hil.core.recording._evidence import sidecar
+from hil.core.recording._evidence import (
+    ACCEPTED_EXPIRY,
+    DEVICE,
+    REPLAY,
+    RUN,
+    SEGMENT,
+    VEHICLE,
+    run_of,
+    sidecar,
+)
 from hil.core.recording._foreign_table import assigned_signals, columns_of
 from hil.core.recording._formats import FRAME_LOGS, NOT_READ, READ, WRITTEN, reader_of, writer_of
 from hil.core.recording._mcap_following import FollowedRecording
@@ -17,9 +26,7 @@ from hil.core.recording._mcap_reader import read_frames
 from hil.core.recording._mcap_reader import read_mcap as read_as_written
 from hil.core.recording._mcap_writer import CHUNK_BYTES, RecordingWriter
 from hil.core.recording._recovery import Missing, missing_of, recover_recording
-from hil.core.recording._run import ACCEPTED_EXPIRY, DEVICE, REPLAY, RUN, SEGMENT, VEHICLE, run_of
-from hil.core.recording._table import BLOCK, Event, Recording
-from hil.core.recording._wheel_angle import with_wheel_angle
+from hil.core.recording._table import BLOCK, Event, Recording, with_wheel_angle
 
 logger = logging.getLogger(__name__)
 

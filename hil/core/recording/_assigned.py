@@ -13,8 +13,8 @@ from hil.core.channels import CHANNELS, TIME, unit_of
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import closest, printable
 from hil.core.recording._column_map import AS_NAMED, OPTION, ColumnMap, Source, fix_of, wanted_unit
-from hil.core.recording._rasters import refuse_sentinel
 from hil.core.recording._table import Array
+from hil.core.recording._table_clock import refuse_sentinel
 from hil.core.units import UnitError, conversion, has_unit
 
 _MOST_LISTED = 20

@@ -10,14 +10,18 @@ from hil.core.channels import CHANNELS, TIME
 from hil.core.errors.wording import repeated
 from hil.core.recording._assigned import assigned, is_there, listing
 from hil.core.recording._column_map import OPTION, ColumnMap
-from hil.core.recording._csv_below_names import (
+from hil.core.recording._csv_layout import (
     MOST_BETWEEN,
+    PER_SECOND,
     UNITS_ABOVE,
+    Layout,
+    LayoutError,
     first_sample,
+    is_number,
+    plain_unit,
     settle_rows,
     take_units,
 )
-from hil.core.recording._csv_layout import PER_SECOND, Layout, LayoutError, is_number, plain_unit
 from hil.core.recording._time_stamps import is_stamp
 
 #: Lines and characters of a file among which its names are looked for.

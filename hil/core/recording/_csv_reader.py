@@ -13,16 +13,13 @@ from hil.core.channels import CHANNELS, TIME
 from hil.core.errors import BadInputError
 from hil.core.files import open_regular
 from hil.core.recording._column_map import AS_NAMED, ColumnMap
-from hil.core.recording._csv_block import about_signs, columns_at_once, number_in
-from hil.core.recording._csv_encoding import as_utf8
+from hil.core.recording._csv_block import about_signs, columns_at_once, number_in, sha256_of
 from hil.core.recording._csv_header import MOST_LINES, counted_distance_s, table_begin
-from hil.core.recording._csv_layout import Layout, LayoutError
-from hil.core.recording._csv_writer import sha256_of
+from hil.core.recording._csv_layout import Layout, LayoutError, as_utf8
 from hil.core.recording._evidence import LARGEST_BYTES, sidecar, take_evidence
 from hil.core.recording._foreign_table import settled
-from hil.core.recording._rasters import refuse_sentinel
 from hil.core.recording._table import Array, Recording, refuse_too_large
-from hil.core.recording._table_clock import counted_on
+from hil.core.recording._table_clock import counted_on, refuse_sentinel
 
 T = TypeVar("T")
 

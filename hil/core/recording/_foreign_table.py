@@ -14,9 +14,8 @@ from hil.core.channels import CHANNELS, INPUT, TIME, unit_of
 from hil.core.errors import BadInputError
 from hil.core.recording._assigned import Assigned, assigned
 from hil.core.recording._column_map import ColumnMap
-from hil.core.recording._rasters import of_one_rate
 from hil.core.recording._table import Array, Recording
-from hil.core.recording._table_clock import counted_on, evenly_placed
+from hil.core.recording._table_clock import counted_on, evenly_placed, of_one_rate
 
 #: Metadata table of a recording whose columns were assigned: by channel, JSON of what was understood.
 COLUMNS = "columns"

@@ -19,10 +19,10 @@ import numpy as np
 from hil.core.can.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
 from hil.core.errors import BadInputError
 from hil.core.files import replacing
+from hil.core.recording._evidence import DEVICE
 from hil.core.recording._formats import FRAME_LOGS
-from hil.core.recording._mdf import tell_header
-from hil.core.recording._run import DEVICE
 from hil.core.recording._table import Recording
+from hil.core.recording.mdf import tell_header
 
 _FRAME = np.dtype(
     [

@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
 
-from hil.core.runtime.real_time import as_this_thread
+from hil.core.runtime.clock import as_this_thread
 
 logger = logging.getLogger(__name__)
 

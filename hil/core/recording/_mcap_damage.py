@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hil.core.recording._mcap_rows import Times
+from hil.core.recording._stored import Times
 
 #: Metadata table that closes a recording: SHA-256 of its samples, and how many they are.
 CHANNELS_TABLE = "channels"

@@ -1,4 +1,7 @@
-"""Reads the native recording back: what is whole of it, and what is not."""
+"""Reads the native recording back: what is whole of it, and what is not.
+
+An MCAP file whose channels have the names of another tool, as of a log that was decoded by its DBC.
+"""
 
 from __future__ import annotations
 
@@ -6,21 +9,25 @@ import hashlib
 import json
 import math
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from hil.core.can.frames import FrameBlock, empty_block
+from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError
 from hil.core.files import open_regular
 from hil.core.recording import _mcap_records as mcap
 from hil.core.recording import _schema
+from hil.core.recording._column_map import AS_NAMED, ColumnMap
+from hil.core.recording._evidence import RUN
+from hil.core.recording._foreign_table import Column, recording_of
 from hil.core.recording._mcap_damage import Findings, damage, lost_earlier
-from hil.core.recording._mcap_rows import Rows
 from hil.core.recording._mcap_walk import MAGIC, placed_records, records_inside
 from hil.core.recording._mcap_writer import CHANNELS_TOPIC, EVENTS_TOPIC, FRAMES_TOPIC
-from hil.core.recording._stored import StoredColumns
+from hil.core.recording._stored import Rows, StoredColumns
 from hil.core.recording._table import Array, Event, Recording
 
 Definitions = tuple[dict[int, mcap.Schema], dict[int, mcap.Channel]]
@@ -272,3 +279,37 @@ class _Contents:
             where=str(self._path),
             fix="export it as CSV or Parquet with the tool that made it, one column a channel",
         )
+
+
+#: Metadata table with units by channel, of a log that was decoded by its DBC.
+_UNITS = "units"
+
+
+def read_mapped_mcap(path: Path, columns: ColumnMap = AS_NAMED) -> Recording:
+    """A recording; with a map of columns its channels are assigned, and all are held.
+
+    Raises:
+        BadInputError: what `read_mcap` and `recording_of` refuse, or a map for a run of this software.
+    """
+    recording = read_mcap(path)
+    if not columns:
+        return recording
+    if RUN in recording.attachments:
+        raise BadInputError(
+            "is a run of this software, whose channels are known", where=str(path), fix="leave out --columns"
+        )
+    wanted = {source.column.lower() for _, source in columns.columns()}
+    kept = [name for name in recording.channels if name in CHANNELS or _may_be(name, wanted)]
+    units = recording.metadata.get(_UNITS, {})
+    table = {name: Column(recording[name], units.get(name, "")) for name in kept or recording.channels}
+    found = recording_of(table, path, columns, "channel", list(recording.notes))
+    return replace(
+        recording,
+        channels=found.channels,
+        notes=found.notes,
+        metadata={**recording.metadata, **found.metadata},
+    )
+
+
+def _may_be(name: str, wanted: set[str]) -> bool:
+    return any(column in name.lower() or name.lower() in column for column in wanted)

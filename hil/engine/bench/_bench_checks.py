@@ -14,8 +14,7 @@ from hil.core.errors import BadInputError
 from hil.core.errors.wording import closest, did_you_mean, is_printable, printable
 from hil.core.files import is_file
 from hil.engine.bench.bench_tables import BenchFile
-from hil.engine.bench.bus_identity import identity_of
-from hil.engine.bench.bus_settings import adapter_mistakes, slows_down
+from hil.engine.bench.bus_settings import adapter_mistakes, identity_of, slows_down
 from hil.engine.bench.simulable import check_simulable, ram_of, rmcu_of
 from hil.plant.controller import in_range
 from sim_backend.bench import DYNO_BUS, RAM_BUS, RMCU_BUS, SENSED_CHANNELS

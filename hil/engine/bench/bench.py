@@ -27,8 +27,7 @@ from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError, BenchError
 from hil.core.errors.wording import printable
 from hil.core.model import Model, load_model
-from hil.core.runtime.clock import Clock, WallClock
-from hil.core.runtime.real_time import undisturbed
+from hil.core.runtime.clock import Clock, WallClock, undisturbed
 from hil.engine.bench.bench_channels import refuse_channels, who_is_missing
 from hil.engine.bench.bench_lock import alone_on
 from hil.engine.bench.bench_tables import BenchFile

@@ -1,26 +1,35 @@
-"""Bench files: interfaces, devices, limits, calibration, DUT. A plan never names hardware."""
+"""Bench files: interfaces, devices, limits, calibration, DUT. A plan never names hardware.
+
+The bench that is meant where none is named: the `bench.toml` of one's own folder, else the shipped `sim`.
+
+One rule for commands and pytest: beside the plan, else in the current folder. Hardware is never driven
+because its file lies there: it is named.
+
+The JSON schema of bench files, for editors.
+"""
 
 from __future__ import annotations
 
 import importlib.resources
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import tomli_w
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from drivers import DeviceTable
 from hil.core.errors import BadInputError
-from hil.core.errors.mistakes import keyed, refuse
-from hil.core.errors.table_mistakes import mistakes_of
+from hil.core.errors.mistakes import keyed, mistakes_of, refuse
 from hil.core.errors.wording import did_you_mean, is_printable, printable
-from hil.core.files.kinds import refuse_other_kind
+from hil.core.files import is_file
 from hil.core.files.shipped import shipped_file
-from hil.core.files.toml_file import parse_toml, toml_text
+from hil.core.files.toml_file import parse_toml, refuse_other_kind, toml_text
+from hil.core.model.schema import DRAFT
 from hil.engine.bench._bench_checks import contradictions, device_mistakes, file_mistakes, unprintable
 from hil.engine.bench.bench_tables import BenchFile
-from hil.engine.bench.device_kinds import device_tables
+from hil.engine.bench.device_kinds import DEFAULT_KINDS, KINDS, device_tables
 
 DEFAULT_BENCH = "sim"
 
@@ -144,3 +153,86 @@ def shipped_benches() -> tuple[str, ...]:
 def shipped(name: str) -> Path:
     """Path of a file of the shipped `benches`."""
     return Path(str(importlib.resources.files("benches"))) / name
+
+
+OWN_BENCH = "bench.toml"
+
+
+def found_bench(folders: Iterable[Path]) -> Path | None:
+    """The bench file of the first of the folders that has one."""
+    return next((folder / OWN_BENCH for folder in folders if is_file(folder / OWN_BENCH)), None)
+
+
+def refuse_hardware(found: Path, option: str = "--bench") -> None:
+    """Refuse to drive hardware that no one has named.
+
+    Raises:
+        BadInputError: the bench file that was found describes hardware, or cannot be used.
+    """
+    if load_bench(found).simulation is None:
+        raise BadInputError(
+            "describes hardware, which is driven only if it is named",
+            where=str(found),
+            fix=f"{option} {found} drives it; {option} sim is the simulated bench",
+        )
+
+
+def folders_of(plan: str | Path | None) -> list[Path]:
+    """Where a bench file is looked for: beside the plan's file, then in the current folder."""
+    beside = [Path(plan).parent] if plan is not None and is_file(Path(plan)) else []
+    return [*beside, Path()]
+
+
+def bench_schema() -> dict[str, Any]:
+    """JSON schema (draft 2020-12) of a bench file, with the kinds of device of all installed packages.
+
+    A bench that `load_bench` takes is valid; what one key says about another, and what stands in the files
+    that are named, only `load_bench` checks.
+    """
+    definitions: dict[str, Any] = {}
+    schema = _schema_of(BenchFile, definitions)
+    for key in LOADED:
+        schema["properties"].pop(key)
+    kinds = {}
+    for kind in KINDS.names():
+        table = KINDS.find(kind)
+        if table is not None:
+            kinds[kind] = _schema_of(table, definitions)
+    for key, default in DEFAULT_KINDS.items():
+        schema["properties"][key] = _by_kind(kinds, default)
+    schema["properties"]["devices"]["additionalProperties"] = _by_kind(kinds, "")
+    definitions["Day"] = {"type": "string", "format": "date", "description": "last valid day, as 2027-06-30"}
+    schema["properties"]["calibration"]["additionalProperties"] = {"$ref": "#/$defs/Day"}
+    return {"$schema": DRAFT, **schema, "title": "Bench file", "$defs": definitions}
+
+
+def _by_kind(kinds: dict[str, dict[str, Any]], default: str) -> dict[str, Any]:
+    """A device's table: its `kind` says which keys it has; without one it is of the kind `default`."""
+    variants = []
+    for kind, schema in kinds.items():
+        named = {"properties": {"kind": {"const": kind}}}
+        required = [key for key in schema.get("required", []) if key != "kind"]
+        variants.append(
+            {
+                "if": named if kind == default else {**named, "required": ["kind"]},
+                "then": {
+                    "properties": schema["properties"],
+                    "required": required,
+                    "additionalProperties": False,
+                },
+            }
+        )
+    names: dict[str, Any] = {"enum": list(kinds)}
+    table: dict[str, Any] = {"type": "object", "properties": {"kind": names}, "allOf": variants}
+    if default:
+        names["default"] = default
+    else:
+        table["required"] = ["kind"]
+    return table
+
+
+def _schema_of(model: type[BaseModel], definitions: dict[str, Any]) -> dict[str, Any]:
+    """A table's schema; tables within it move to `definitions`."""
+    schema = model.model_json_schema()
+    definitions |= schema.pop("$defs", {})
+    return schema

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from hil.core.errors import BenchError
 from hil.core.files.locks import HeldError, lock_named
 from hil.engine.bench.bench_tables import BenchFile
-from hil.engine.bench.bus_identity import identity_of, port_of_any_adapter
+from hil.engine.bench.bus_settings import identity_of, port_of_any_adapter
 
 
 @contextlib.contextmanager

@@ -10,8 +10,8 @@ from pydantic import BeforeValidator, Field, SerializeAsAny, model_validator
 
 from drivers import DeviceTable, File, LoadTable, Name
 from hil.core.errors.wording import LONGEST_NAME
-from hil.core.files.kinds import FORMAT, FormatNumber
-from hil.engine.bench.limit_tables import Bound, Interlock, Limit, Limits, Table
+from hil.core.files.toml_file import FORMAT, FormatNumber
+from hil.engine.bench.ranges import Bound, Interlock, Limit, Limits, Table
 
 
 def _date(value: object) -> object:

@@ -17,7 +17,7 @@ from drivers import TICK_S, BusLoop, Samples, Stream, bits_on_the_wire
 from hil.core.can.frames import ERROR_FRAME, FrameBlock
 from hil.core.runtime.compiled import compiled
 from hil.engine.bench.bench_tables import BenchFile
-from hil.engine.bench.limit_tables import TwistTable
+from hil.engine.bench.ranges import TwistTable
 from test_plans import Array
 
 TWIST = "shaft_twist_rad"

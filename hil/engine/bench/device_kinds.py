@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from drivers import OWN_KINDS, DeviceTable, LoadTable
 from hil.core.can.symbol_files import LARGEST_BYTES
 from hil.core.errors import BadInputError
-from hil.core.errors.table_mistakes import mistakes_of
+from hil.core.errors.mistakes import mistakes_of
 from hil.core.errors.wording import printable
 from hil.core.files import read_bytes
 from hil.core.recording import DEVICE

@@ -18,8 +18,7 @@ from collections.abc import Iterator, Sequence
 from hil.core.errors import BenchError, EmergencyStopError, HilError, InterruptError
 from hil.core.result import SafeState
 from hil.engine.bench.bench_tables import BenchFile
-from hil.engine.ipc.ipc import RECORDING, RunOutcome, RunRequest
-from hil.engine.ipc.ipc_data import asked_of, outcome_of
+from hil.engine.ipc.ipc import RECORDING, RunOutcome, RunRequest, asked_of, outcome_of
 from hil.engine.ipc.ipc_messages import (
     Concluded,
     EmergencyAsked,
@@ -35,8 +34,7 @@ from hil.engine.ipc.ipc_messages import (
     Typed,
 )
 from hil.engine.ipc.ipc_pipe import IpcPipe
-from hil.engine.process.orphaned_run import identity_of, recording_left, result_left
-from hil.engine.process.safe_state_check import complaints_of
+from hil.engine.process.lost_process import complaints_of, identity_of, recording_left, result_left
 from hil.engine.run.operator import EMERGENCY, LOOK_S, typed_emergency
 from hil.engine.run.run import run_plan
 from hil.engine.stop.emergency_stop import keep_latched

@@ -11,9 +11,16 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.can.dbc_messages import MessageLayout, MessageSamples, decoded, keys_of, read_messages_of
+from hil.core.can.dbc_messages import (
+    MessageLayout,
+    MessageSamples,
+    decoded,
+    for_addresses,
+    keys_of,
+    of_other_addresses,
+    read_messages_of,
+)
 from hil.core.can.frames import FrameBlock
-from hil.core.can.j1939 import for_addresses, of_other_addresses
 from hil.core.channels import TIME
 from hil.core.errors import BadInputError
 from hil.core.recording import AS_NAMED, ColumnMap, RecordingWriter, assigned_signals

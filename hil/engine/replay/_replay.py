@@ -24,8 +24,8 @@ from hil.engine.replay._clocks import shifted
 from hil.engine.replay._counts import FrameCounts, counted
 from hil.engine.replay._dbc import DbcDecoder
 from hil.engine.replay._segments import Segments, segments_from
-from hil.engine.run.provenance import hashes
 from hil.engine.run.recorder import Recorder
+from hil.engine.run.run_files import hashes
 from test_plans import Plan, judge, not_checked
 
 _NO_SEGMENTS = "the times of the plan's segments in the log are not known, so no criterion is evaluated"

@@ -11,9 +11,8 @@ from drivers import Samples, Stream
 from hil.core.channels import unit_of
 from hil.core.errors import BenchError, LimitTripError
 from hil.core.result import LimitResult
-from hil.engine.bench.limit_tables import Interlock, Limits
 from hil.engine.bench.range_scan import StreamRanges
-from hil.engine.bench.ranges import Range, ranges_of
+from hil.engine.bench.ranges import Interlock, Limits, Range, ranges_of
 
 _PAUSE_S = 0.03  # wires are looked at every 10 ms
 #: Longer than this no one watches the bench: RMCU and dynos have long gone to safety by themselves.

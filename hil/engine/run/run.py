@@ -29,17 +29,16 @@ from hil.core.result import (
 )
 from hil.core.runtime.clock import utc
 from hil.engine.bench.bench import Bench, open_bench, refuse_needs
-from hil.engine.bench.bus_loads import BusLoads
-from hil.engine.bench.calibration_dates import accepted_expiry
+from hil.engine.bench.bench_channels import accepted_expiry
+from hil.engine.bench.bus_tally import BusLoads
 from hil.engine.bench.request_timing import COLLECT_S, RequestTiming
 from hil.engine.ipc.ipc import RECORDING, RunOutcome, RunRequest, analysed_apart, analysed_here
 from hil.engine.run.arming import Arming
-from hil.engine.run.failures import Failures
 from hil.engine.run.operator import Operator
 from hil.engine.run.preflight import channels_of, preflight, refuse_unconfirmed
 from hil.engine.run.recorder import Recorder
 from hil.engine.run.run_files import store_expiry, store_inputs, store_result
-from hil.engine.run.run_monitoring import RunMonitoring
+from hil.engine.run.run_monitoring import Failures, RunMonitoring
 from hil.engine.run.safety import reach_safe_state
 from hil.engine.run.step_execution import BenchConductor
 from hil.engine.stop.emergency_stop import keep_latched, refuse_latched

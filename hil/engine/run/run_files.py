@@ -1,11 +1,15 @@
-"""What a run stores in its recording beside what was measured."""
+"""What a recording says about the files that it holds.
+
+What a run stores in its recording beside what was measured.
+"""
 
 from __future__ import annotations
 
+import hashlib
 from pathlib import Path
 
 from hil.core.channels import CHANNELS
-from hil.core.files.kinds import FORMAT
+from hil.core.files.toml_file import FORMAT
 from hil.core.model import model_to_toml
 from hil.core.recording import ACCEPTED_EXPIRY
 from hil.core.result import AcceptedExpiry, RunResult
@@ -13,9 +17,13 @@ from hil.core.runtime.versions import versions
 from hil.engine.bench.bench import Bench
 from hil.engine.bench.device_kinds import descriptions_of
 from hil.engine.ipc.ipc import RunRequest
-from hil.engine.run.provenance import hashes
 from hil.engine.run.recorder import Recorder
 from hil.engine.run.step_execution import BenchConductor
+
+
+def hashes(attachments: dict[str, bytes]) -> dict[str, str]:
+    """SHA-256 of each attachment."""
+    return {name: hashlib.sha256(content).hexdigest() for name, content in sorted(attachments.items())}
 
 
 def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench, started_at: str) -> dict[str, bytes]:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from drivers import TakesBack
 from hil.core.errors import BenchError
-from hil.core.runtime.real_time import without_collections
+from hil.core.runtime.clock import without_collections
 from hil.engine.bench.bench import Bench
 from hil.engine.bench.request_timing import Periodic
 from test_plans import Array, Quantity

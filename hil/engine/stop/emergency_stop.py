@@ -16,7 +16,7 @@ from hil.core.errors import BenchError, EmergencyStopError, HilError, StopWay
 from hil.core.files import write_atomically
 from hil.core.result import StoppedInEmergency
 from hil.engine.bench.bench_tables import BenchFile
-from hil.engine.bench.bus_identity import identities_of, share_a_bus, within_process
+from hil.engine.bench.bus_settings import identities_of, share_a_bus, within_process
 from hil.engine.stop.stop_places import (
     RESET,
     make_for_all,

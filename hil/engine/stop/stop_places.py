@@ -13,7 +13,7 @@ from pathlib import Path
 from hil.core.errors import BadInputError
 from hil.core.files import make_directory
 from hil.engine.bench.bench_tables import BenchFile
-from hil.engine.bench.bus_identity import within_process
+from hil.engine.bench.bus_settings import within_process
 
 FOLDER = "emergency-stops"
 RESET = "reset"

@@ -8,7 +8,7 @@ import threading
 from collections.abc import Callable, Iterator
 from types import FrameType
 
-from hil.core.conventions import ENDING_SIGNALS
+from hil.core.channels import ENDING_SIGNALS
 
 
 @contextlib.contextmanager

@@ -3,7 +3,7 @@
 `tick` is one millisecond, on the wire and in predictions; `ClosedLoop` executes many at once.
 """
 
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from hil.plant.closed_loop._noise import Noise
 from hil.plant.closed_loop._state import State, state_at_rest
 from hil.plant.closed_loop.advance import advance

@@ -8,7 +8,7 @@ from collections.abc import Collection, Mapping
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from hil.core.errors import BadInputError, BenchError
 from hil.core.model import Model
 from hil.plant import LONGEST_STEP_S

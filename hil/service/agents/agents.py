@@ -20,7 +20,7 @@ from hil.api_schemas.agent import AgentBench, AgentData, AgentOrders, AgentRepor
 from hil.core.errors import HilError
 from hil.core.files import make_directory, read_text, write_atomically
 from hil.engine.ipc.ipc_messages import EmergencyAsked
-from hil.execution.files import files_of, folder_of
+from hil.execution.data_folder import files_of, folder_of
 from hil.execution.run_execution import PLAN, RunningRun
 from hil.service.agents.remote_bench import Agent, AgentsRun, RemoteBench
 from hil.service.store import AgentStore, BenchStore, DatabaseAwayError, LeaseStore, RunStore

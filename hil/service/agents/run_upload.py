@@ -15,8 +15,8 @@ from hil.api_schemas.api import RunData
 from hil.core.errors import BenchError
 from hil.core.files import make_directory, sha256_of
 from hil.engine import RECORDING
-from hil.execution.daemon_thread import apart
-from hil.execution.files import folder_of
+from hil.execution.background import apart
+from hil.execution.data_folder import folder_of
 from hil.execution.run_process import result_in
 from hil.service.store import RunStore
 

@@ -21,7 +21,7 @@ from hil.api_schemas.agent import (
 )
 from hil.api_schemas.api import BenchName, RunData, RunId
 from hil.core.errors import HilError
-from hil.execution.files import LOCK
+from hil.execution.data_folder import LOCK
 from hil.service.agents.remote_bench import RemoteBench
 from hil.service.api._access import AgentItself, Engineer, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing

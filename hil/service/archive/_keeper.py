@@ -11,8 +11,8 @@ from pathlib import Path
 
 from hil.core.errors import HilError
 from hil.core.files import sha256_of
-from hil.execution.daemon_thread import apart
-from hil.execution.files import LOCK, files_in, folder_of
+from hil.execution.background import apart
+from hil.execution.data_folder import LOCK, files_in, folder_of
 from hil.service.archive._archive import PIECE_BYTES, Archive, ArchiveAwayError, Kept
 from hil.service.archive._rounds import Rounds
 from hil.service.store import DatabaseAwayError, FileStore, KeptFile

@@ -19,7 +19,7 @@ from hil.api_schemas.design import FileName
 from hil.api_schemas.upload import GivenKind, KeptApart
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
-from hil.execution.files import files_of
+from hil.execution.data_folder import files_of
 from hil.service.files.catalogue import Catalogue
 from hil.service.files.plans import Plans
 from hil.service.store import GivenStore, LogStore

@@ -17,7 +17,7 @@ from typing import Generic, Protocol, TypeVar
 from hil.api_schemas.api import Record
 from hil.core.errors import HilError
 from hil.core.files import make_directory, sha256_of
-from hil.execution.daemon_thread import apart
+from hil.execution.background import apart
 from hil.service.archive import Archive, ArchiveAwayError, Kept
 from hil.service.jobs.job_repository import files_in_results
 from hil.service.store import DatabaseAwayError, KeptFile, ResultKind, ResultStore, SharedJob

@@ -15,8 +15,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.channels import TIME
-from hil.core.conventions import COMFORT_BAND_HZ
+from hil.core.channels import COMFORT_BAND_HZ, TIME
 from hil.core.errors import BadInputError
 from hil.core.recording import SEGMENT, FollowedRecording, read_recording
 from hil.core.result import CriterionResult, Segment

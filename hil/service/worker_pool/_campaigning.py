@@ -15,7 +15,7 @@ from hil.core.errors import BadInputError, HilError
 from hil.core.errors.wording import did_you_mean, printable
 from hil.core.files import make_directory, read_text, write_atomically
 from hil.engine.bench.bench_file import shipped, shipped_benches
-from hil.execution.files import files_of
+from hil.execution.data_folder import files_of
 from hil.service.worker_pool.drawn_numbers import number
 from test_plans import plan_from_text
 from test_plans.yaml_document import KeyPath

@@ -8,7 +8,7 @@ from pathlib import Path
 from hil.api_schemas.api import PlanData, VariableData
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable
-from hil.execution.files import files_of
+from hil.execution.data_folder import files_of
 from test_plans import Plan, plan_from_text
 
 

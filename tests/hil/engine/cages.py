@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from drivers import Connections, Device, DeviceTable, SampleQueue, Stream
-from hil.engine.bench.limit_tables import Interlock
+from hil.engine.bench.ranges import Interlock
 
 CHANNEL = "cage_shut"
 PERIOD_S = 0.01

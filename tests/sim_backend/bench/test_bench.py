@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from drivers import TICK_S, Wire, read_rmcu
-from hil.core.can.checksum import crc8_many
-from hil.core.can.frames import longest_frame_s
+from hil.core.can.frames import crc8_many, longest_frame_s
 from hil.core.errors import BadInputError
 from hil.core.model import Model, load_model
 from sim_backend.bench import Fault, SimulatedBench, SimulationSettings

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hil.core.can.checksum import crc8
 from hil.core.can.dbc import read_dbc
+from hil.core.can.frames import crc8
 from hil.plant.controller.driving_force_observer import DrivingForceObserver
 from hil.plant.controller.filters import settle, step, tustin
 from hil.plant.controller.memory import OBSERVER_SPEED, OBSERVER_TORQUE, Memory

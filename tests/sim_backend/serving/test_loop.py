@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from drivers import read_rmcu
-from hil.core.can.checksum import crc8_many
-from hil.core.can.frames import empty_block, joined
+from hil.core.can.frames import crc8_many, empty_block, joined
 from hil.core.model import load_model
 from sim_backend.bench import SimulatedBench, SimulationSettings
 from sim_backend.serving import BenchServer

@@ -18,7 +18,7 @@ from hil.analysis.diagnosis.data._thresholds import (
 )
 from hil.analysis.diagnosis.data._trace import Trace
 from hil.core.channels import OUTPUTS
-from hil.core.errors.digits import factor, multiple
+from hil.core.errors.wording import factor, multiple
 
 Array = npt.NDArray[np.float64]
 

@@ -22,7 +22,7 @@ from hil.analysis.diagnosis.data._thresholds import (
 from hil.analysis.diagnosis.data._trace import Trace
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
-from hil.core.errors.digits import multiple
+from hil.core.errors.wording import multiple
 
 Array = npt.NDArray[np.float64]
 

@@ -9,8 +9,7 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.tell._played import played
 from hil.analysis.diagnosis.tell._thresholds import LASTING, STEP_FROM_RAD_S, STEP_NM
-from hil.core.channels import OUTPUTS
-from hil.core.conventions import COMFORT_BAND_HZ, TICK_S
+from hil.core.channels import COMFORT_BAND_HZ, OUTPUTS, TICK_S
 from hil.core.model import Model
 from test_plans.metrics import energy_within, periodogram
 

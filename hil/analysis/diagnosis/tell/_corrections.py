@@ -16,7 +16,7 @@ from hil.analysis.diagnosis.search._from_base import moved
 from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.tell._result import NamedEffect, Start
 from hil.core.effects import EFFECTS
-from hil.core.errors.digits import multiple
+from hil.core.errors.wording import multiple
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]

@@ -16,7 +16,7 @@ from hil.analysis.diagnosis.data._trace import Trace
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.tell._thresholds import DRIFT_SHARE, DRIFTS_NOISES, SHARED
 from hil.core.channels import OUTPUTS
-from hil.core.errors.digits import multiple
+from hil.core.errors.wording import multiple
 
 Array = npt.NDArray[np.float64]
 

@@ -21,7 +21,7 @@ from hil.analysis.diagnosis.search._tracking import track
 from hil.analysis.diagnosis.tell._result import Verdict
 from hil.analysis.diagnosis.tell._thresholds import CHANNEL_NOISES, EVENT_NOISES, EVENT_S
 from hil.core.channels import OUTPUTS
-from hil.core.errors.digits import multiple
+from hil.core.errors.wording import multiple
 
 Array = npt.NDArray[np.float64]
 Gaps = dict[str, ChannelGap]

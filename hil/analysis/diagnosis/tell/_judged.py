@@ -26,7 +26,7 @@ from hil.analysis.diagnosis.tell._result import Diagnosis, NamedEffect, Overlay,
 from hil.analysis.diagnosis.tell._thresholds import CHANNEL_NOISES
 from hil.analysis.diagnosis.tell._words import signature
 from hil.core.channels import OUTPUTS
-from hil.core.errors.digits import multiple, share
+from hil.core.errors.wording import multiple, share
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]

@@ -19,7 +19,7 @@ from hil.analysis.diagnosis.tell._result import Considered, NamedEffect
 from hil.analysis.diagnosis.tell._thresholds import NOTHING_SIGMAS
 from hil.analysis.diagnosis.tell._words import Where, where
 from hil.core.effects import EFFECTS
-from hil.core.errors.digits import multiple
+from hil.core.errors.wording import multiple
 from hil.core.model import EffectUse, Model
 
 Array = npt.NDArray[np.float64]

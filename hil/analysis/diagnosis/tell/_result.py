@@ -12,7 +12,7 @@ from hil.analysis.diagnosis.data._gap import BANDS_HZ, ChannelGap, GapMap
 from hil.analysis.diagnosis.tell._words import Where
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
-from hil.core.files.kinds import FORMAT
+from hil.core.files.toml_file import FORMAT
 from hil.core.model import EffectUse, Model
 
 Array = npt.NDArray[np.float64]

@@ -29,7 +29,7 @@ from hil.analysis.diagnosis.tell._thresholds import (
     WHEEL_RADIUS_M,
 )
 from hil.core.channels import OUTPUTS, unit_of
-from hil.core.errors.digits import multiple, quantity
+from hil.core.errors.wording import multiple, quantity
 from hil.core.model import Model
 from hil.plant import gear_ratio_of
 from test_plans import Plan, plan_from_text

@@ -1,12 +1,53 @@
-"""What the doctor found: data, for people and programs."""
+"""Calibration dates of the bench file against today.
+
+Emergency stops that keep the bench from being armed.
+
+What the doctor found: data, for people and programs.
+"""
 
 from __future__ import annotations
 
+import datetime
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
 from drivers import Finding
+from hil.core.errors import BenchError
 from hil.core.result import StreamClock, Zero
+from hil.engine.bench.bench_tables import BenchFile
+from hil.engine.stop.emergency_stop import refuse_latched
+from hil.engine.stop.stop_places import remark_on_place
+
+_SOON = datetime.timedelta(days=30)
+
+
+def findings_of_dates(file: BenchFile, today: datetime.date) -> Iterator[Finding]:
+    """Calibrations that have run out, or soon will; and that none is stated."""
+    where = f"{file.source}, [calibration]"
+    for sensor, until in file.calibration.items():
+        if until < today:
+            fix = "have it calibrated and enter the new date; runs are refused until then"
+            yield Finding("fault", f"the calibration of '{sensor}' expired on {until}", where, fix)
+        elif until - today <= _SOON:
+            what = f"the calibration of '{sensor}' expires in {(until - today).days} days, on {until}"
+            yield Finding("hint", what, where, "have it calibrated before that day; later runs are refused")
+    if not file.calibration and file.simulation is None:
+        fix = "enter the last valid day of the calibration for each sensor"
+        yield Finding("hint", "no calibration dates are stated", str(file.source), fix)
+
+
+def findings_of_stops(file: BenchFile) -> Iterator[Finding]:
+    """The one that a run is refused for; and where one would be kept, if others may not find it there."""
+    try:
+        refuse_latched(file)
+    except BenchError as error:
+        yield Finding("fault", error.what, error.where, error.fix)
+    remark = remark_on_place(file)
+    if remark:
+        what, _, fix = remark.partition("; ")
+        yield Finding("hint", what, f"bench '{file.name}'", fix)
+
 
 #: `fine`: no fault. `faults`: something is not as it should be. `not_there`: neither RMCU nor dynos answer.
 Verdict = Literal["fine", "faults", "not_there"]

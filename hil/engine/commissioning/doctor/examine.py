@@ -13,18 +13,21 @@ from hil.core.can.frames import FrameBlock
 from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError, BenchError
 from hil.core.model import load_model
-from hil.core.runtime.real_time import undisturbed
+from hil.core.runtime.clock import undisturbed
 from hil.core.runtime.versions import versions
 from hil.engine.bench.bench import bench_clock, connections_of, open_wire
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.bus_tally import Tally, known_identifiers
 from hil.engine.bench.measured import findings_of_channels
-from hil.engine.commissioning.doctor._buses import findings_of_bus, findings_of_link
-from hil.engine.commissioning.doctor._clocks import Listener
-from hil.engine.commissioning.doctor._dates import findings_of_dates
-from hil.engine.commissioning.doctor._stops import findings_of_stops
-from hil.engine.commissioning.doctor.examination import BusFacts, DeviceFacts, Examination
-from hil.engine.run.identification import identities_of, mismatch_in_words, what_to_do
+from hil.engine.commissioning.doctor._buses import Listener, findings_of_bus, findings_of_link
+from hil.engine.commissioning.doctor.examination import (
+    BusFacts,
+    DeviceFacts,
+    Examination,
+    findings_of_dates,
+    findings_of_stops,
+)
+from hil.engine.run.arming import identities_of, mismatch_in_words, what_to_do
 from hil.engine.run.zero import SENSORS, offset_in_words, turning, zero_of
 from hil.engine.run.zero import what_to_do as what_to_do_about_zero
 from hil.engine.stop.stopping import StopRequest

@@ -3,7 +3,7 @@ from crccheck.crc import Crc8SaeJ1850
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hil.core.can.checksum import crc8, crc8_many
+from hil.core.can.frames import crc8, crc8_many
 
 
 @given(st.integers(0, 0x7FF), st.integers(0, 2**64 - 1))

@@ -8,7 +8,7 @@ import pytest
 from drivers import Binding, FrameSource, NewestFrames, SampleAssembler
 from hil.core.can.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock, standard
 from hil.core.can.signals import Signal
-from hil.engine.bench.limit_tables import Limits
+from hil.engine.bench.ranges import Limits
 from hil.engine.run.limits import LimitWatch
 
 SPEED = Binding("rmcu", 0x110, Signal("MotorSpeed", 0, 16, scale=0.1, unit="rad/s"), "motor_speed_rad_s")

@@ -9,8 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hil.core.can.dbc_messages import read_messages_of
-from hil.core.can.j1939 import group_of
+from hil.core.can.dbc_messages import group_of, read_messages_of
 from hil.core.can_logs import read_can_log
 from hil.core.recording import read_as_written
 from hil.engine.replay import ReplayRequest, replay

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from hil.core.errors.digits import factor, multiple, quantity, share
+from hil.core.errors.wording import factor, multiple, quantity, share
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from typing import Literal
 import pytest
 from pydantic import BaseModel, Field, ValidationError
 
-from hil.core.errors.table_mistakes import needed
+from hil.core.errors.mistakes import needed
 
 
 class Table(BaseModel, strict=True, allow_inf_nan=False):

@@ -8,7 +8,7 @@ import pytest
 
 from hil.core.controller import controller_from_toml, controller_to_toml, load_controller
 from hil.core.errors import BadInputError
-from hil.core.files.kinds import FORMAT
+from hil.core.files.toml_file import FORMAT
 from hil.core.model import load_model, model_to_toml
 from hil.engine import load_bench
 from test_plans import load_plan, plan_from_text

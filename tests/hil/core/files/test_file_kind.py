@@ -6,7 +6,7 @@ import pytest
 
 from hil.core.controller import load_controller
 from hil.core.errors import BadInputError
-from hil.core.files.kinds import kind_of
+from hil.core.files.toml_file import kind_of
 from hil.core.model import load_model
 from hil.engine import load_bench
 from test_plans import load_plan

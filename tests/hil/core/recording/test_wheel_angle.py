@@ -9,7 +9,7 @@ import pytest
 
 from hil.core.channels import WHEEL_ANGLE
 from hil.core.recording import Recording
-from hil.core.recording._wheel_angle import with_wheel_angle
+from hil.core.recording._table import with_wheel_angle
 
 
 def test_the_angle_is_the_speeds_integral() -> None:

@@ -8,7 +8,7 @@ import threading
 
 import pytest
 
-from hil.core.runtime.real_time import as_this_thread, undisturbed
+from hil.core.runtime.clock import as_this_thread, undisturbed
 
 
 @pytest.mark.parametrize("collections", [True, False])

@@ -13,7 +13,7 @@ from hil.core.errors import BadInputError, BenchError
 from hil.core.model import load_model
 from hil.engine.bench.bench import open_bench
 from hil.engine.bench.bench_channels import refuse_channels
-from hil.engine.bench.limit_tables import ChannelLimit
+from hil.engine.bench.ranges import ChannelLimit
 from sim_backend.can_interface import attached
 from tests.benches_for_tests import SIM, running, sim_bench
 from tests.hil.engine.run.test_safety import Valve

@@ -10,8 +10,7 @@ from typing import Any
 import jsonschema
 import pytest
 
-from hil.engine.bench.bench_file import shipped, shipped_benches
-from hil.engine.bench.bench_schema import bench_schema
+from hil.engine.bench.bench_file import bench_schema, shipped, shipped_benches
 from tests.benches_for_tests import SIM
 
 SCHEMA = bench_schema()

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from hil.engine.bench import bus_identity
+from hil.engine.bench import bus_settings
 from hil.engine.bench.bench_tables import Bus
-from hil.engine.bench.bus_identity import identity_of, may_be_same
+from hil.engine.bench.bus_settings import identity_of, may_be_same
 
 
 def of(interface: str, channel: str | int, **options: Any) -> str:
@@ -66,7 +66,7 @@ def test_a_bus_within_the_process_is_nobody_elses() -> None:
 def test_an_adapter_that_comes_back_as_another_tty_is_the_same(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(bus_identity, "_BY_ID", tmp_path / "by-id")
+    monkeypatch.setattr(bus_settings, "_BY_ID", tmp_path / "by-id")
     (tmp_path / "by-id").mkdir()
     link = tmp_path / "by-id/usb-CANable_1234"
     found = []

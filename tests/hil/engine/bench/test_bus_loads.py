@@ -5,7 +5,7 @@ import pytest
 
 from hil.core.can.frames import FRAME
 from hil.engine import RunRequest, run_plan
-from hil.engine.bench.bus_loads import BusLoads
+from hil.engine.bench.bus_tally import BusLoads
 from hil.engine.prediction.forecast import forecast
 from tests.benches_for_tests import SIM, plan, sim_bench
 

@@ -11,7 +11,7 @@ import pytest
 from hil.core.errors import BadInputError
 from hil.core.recording import ACCEPTED_EXPIRY, read_recording, run_of
 from hil.engine import RunRequest, run_plan
-from hil.engine.bench.calibration_dates import accepted_expiry
+from hil.engine.bench.bench_channels import accepted_expiry
 from reports import write_documents
 from tests.benches_for_tests import SIM, plan, sim_bench
 

@@ -17,7 +17,7 @@ from hil.core.recording import read_recording
 from hil.engine import BenchFile, RunRequest, run_plan
 from hil.engine.bench.bench import open_bench
 from hil.engine.bench.computed_channels import BusStatistics, ShaftTwist, channels_of_bus, computed_channels
-from hil.engine.bench.limit_tables import NamedLimit, TwistTable
+from hil.engine.bench.ranges import NamedLimit, TwistTable
 from test_plans import Array
 from tests.benches_for_tests import SIM, plan, sim_bench
 from tests.clocks import SteppedClock

@@ -10,7 +10,7 @@ import pytest
 from pydantic import BaseModel, ValidationError
 
 from drivers import DynoTable, RmcuTable
-from hil.core.errors.table_mistakes import mistakes_of
+from hil.core.errors.mistakes import mistakes_of
 from hil.engine.bench.device_kinds import KINDS, descriptions_of, device_tables
 from tests.benches_for_tests import SIM
 

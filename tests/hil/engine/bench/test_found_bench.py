@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from hil.core.errors import BadInputError
-from hil.engine.bench.found_bench import folders_of, found_bench, refuse_hardware
+from hil.engine.bench.bench_file import folders_of, found_bench, refuse_hardware
 from tests.hil.core.model.test_schemas import BENCHES
 
 

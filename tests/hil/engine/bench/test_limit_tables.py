@@ -11,8 +11,7 @@ from pydantic import BaseModel, ValidationError
 from hil.core.errors import BadInputError
 from hil.engine import BenchFile
 from hil.engine.bench.bench_file import bench_from_dict
-from hil.engine.bench.limit_tables import Interlock, Limits, NamedLimit, TwistTable
-from hil.engine.bench.ranges import Range, ranges_of
+from hil.engine.bench.ranges import Interlock, Limits, NamedLimit, Range, TwistTable, ranges_of
 from tests.benches_for_tests import SIM
 
 WARM = """

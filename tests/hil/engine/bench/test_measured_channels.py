@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hil.core.can.frames import FrameBlock
-from hil.core.conventions import TICK_S
+from hil.core.channels import TICK_S
 from hil.core.errors import BenchError
 from hil.core.recording import read_recording
 from hil.engine import RunOutcome, RunRequest, run_plan

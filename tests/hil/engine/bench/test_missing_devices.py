@@ -8,7 +8,7 @@ from drivers import DeviceTable
 from hil.core.errors import BadInputError, BenchError
 from hil.engine import RunRequest, run_plan
 from hil.engine.bench.bench import open_bench, refuse_needs
-from hil.engine.bench.limit_tables import ChannelLimit
+from hil.engine.bench.ranges import ChannelLimit
 from hil.engine.run.preflight import channels_of
 from sim_backend.rcs import DynoNode
 from tests.benches_for_tests import SIM, plan, sim_bench

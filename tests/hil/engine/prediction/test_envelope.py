@@ -4,7 +4,7 @@ import pytest
 
 from hil.core.errors import BadInputError, BenchError
 from hil.engine import RunRequest, run_plan
-from hil.engine.prediction.envelope import envelope_of
+from hil.engine.prediction.forecast import envelope_of
 from tests.benches_for_tests import SIM, plan
 
 PEAKS = {"motor_torque_nm": 40.0, "shaft_torque_left_nm": 500.0, "motor_speed_rad_s": 0.0}

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from hil.engine.process.ending_process import is_ending
+from hil.engine.process.hardware_process import is_ending
 
 pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="Linux only")
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from hil.core.errors import BenchError
 from hil.core.recording import read_recording
 from hil.engine import RECORDING, RunRequest, run_plan
-from hil.engine.process.orphaned_run import identity_of, recording_left, result_left
+from hil.engine.process.lost_process import identity_of, recording_left, result_left
 from tests.benches_for_tests import plan, sim_bench
 
 STEPS = "[{step: {segment: s, quantity: motor_torque, from_nm: 0, to_nm: 5, before_s: 0.2, after_s: 1.5}}]"

@@ -6,7 +6,7 @@ import threading
 from pathlib import Path
 
 from hil.engine import RunRequest, run_plan
-from hil.engine.process.safe_state_check import complaints_of
+from hil.engine.process.lost_process import complaints_of
 from tests.benches_for_tests import SIM, plan
 from tests.drivers.pseudo_adapter import plugged_in
 from tests.hil.engine.commissioning.doctor.test_examine import with_slcan

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from drivers import read_rmcu
-from hil.core.can.checksum import crc8_many
-from hil.core.can.frames import FrameBlock, frames, inserted
+from hil.core.can.frames import FrameBlock, crc8_many, frames, inserted
 from hil.core.can.signals import Payloads
 from hil.core.errors import BadInputError
 from hil.core.recording import read_frames

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from drivers import read_rmcu
-from hil.core.can.checksum import crc8_many
+from hil.core.can.frames import crc8_many
 from hil.core.errors import BadInputError
 from hil.core.recording import read_as_written, read_recording, run_of, write_frames
 from hil.engine import RunRequest, run_plan

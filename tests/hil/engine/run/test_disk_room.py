@@ -9,7 +9,7 @@ import pytest
 
 from hil.core.errors import BadInputError
 from hil.core.files import disk_of
-from hil.engine.run.disk_room import needed_bytes, refuse_too_little_room, remark_on_room
+from hil.engine.run.preflight import needed_bytes, refuse_too_little_room, remark_on_room
 from test_plans import Plan
 from tests.benches_for_tests import plan
 

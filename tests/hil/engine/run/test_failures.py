@@ -12,7 +12,7 @@ from hil.core.errors import (
     InterruptError,
     OrderlyEndError,
 )
-from hil.engine.run.failures import Failures
+from hil.engine.run.run_monitoring import Failures
 
 Events = list[tuple[str, str]]
 

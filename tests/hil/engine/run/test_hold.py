@@ -12,7 +12,7 @@ import pytest
 from hil.core.errors import BenchError, EmergencyStopError, InterruptError, OrderlyEndError
 from hil.core.recording import read_recording
 from hil.engine import RunOutcome, RunRequest, run_plan
-from hil.engine.bench.limit_tables import NamedLimit
+from hil.engine.bench.ranges import NamedLimit
 from hil.engine.stop.emergency_stop import reset
 from tests.benches_for_tests import SIM, plan, sim_bench
 from tests.hil.engine.cages import cage, shut

@@ -8,7 +8,7 @@ from hil.core.recording import read_recording
 from hil.core.result import RunResult
 from hil.engine import RunRequest, run_plan
 from hil.engine.commissioning.doctor import DoctorRequest, examine_bench
-from hil.engine.run.identification import identities_of, refuse_others
+from hil.engine.run.arming import identities_of, refuse_others
 from tests.benches_for_tests import SIM, plan, running, sim_bench
 
 PLAN = plan("[{wait: {duration_s: 0.1}}]")

@@ -7,7 +7,7 @@ import pytest
 
 from drivers import Samples, Stream
 from hil.core.errors import BenchError
-from hil.engine.bench.limit_tables import ChannelLimit
+from hil.engine.bench.ranges import ChannelLimit
 from hil.engine.run.limits import LimitWatch
 from tests.benches_for_tests import SIM
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from hil.core.runtime.versions import versions
-from hil.engine.run.provenance import hashes
+from hil.engine.run.run_files import hashes
 
 
 def test_attachments_have_the_digests_that_the_standard_gives() -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from hil.core.errors import BenchError, EmergencyStopError, HilError, OrderlyEndError
-from hil.engine.bench.limit_tables import NamedLimit
+from hil.engine.bench.ranges import NamedLimit
 from sim_backend.bench import Fault
 from sim_backend.can_interface import attached
 from tests.benches_for_tests import SIM

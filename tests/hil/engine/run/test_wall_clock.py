@@ -19,7 +19,7 @@ from mcap.reader import make_reader
 from hil.core.errors import BenchError, InterruptError
 from hil.core.model import load_model
 from hil.core.recording import read_recording
-from hil.core.runtime.real_time import undisturbed
+from hil.core.runtime.clock import undisturbed
 from hil.engine import RunRequest, run_plan
 from sim_backend.bench import SimulatedBench, SimulationSettings
 from tests.benches_for_tests import SIM, plan

@@ -12,7 +12,7 @@ import pytest
 
 from hil.core.errors import BenchError
 from hil.engine.bench.bench_tables import BenchFile, Bus
-from hil.engine.commissioning.doctor._stops import findings_of_stops
+from hil.engine.commissioning.doctor.examination import findings_of_stops
 from hil.engine.stop import stop_places
 from hil.engine.stop.emergency_stop import latch, refuse_latched, reset
 from tests.benches_for_tests import SIM, sim_bench

@@ -8,7 +8,7 @@ import threading
 
 import pytest
 
-from hil.core.conventions import ENDING_SIGNALS
+from hil.core.channels import ENDING_SIGNALS
 from hil.engine.stop.stopping import StopRequest
 
 pytestmark = pytest.mark.usefixtures("heard_hangups")

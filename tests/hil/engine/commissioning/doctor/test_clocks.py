@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from drivers import Counting, Samples, Stream
-from hil.engine.commissioning.doctor._clocks import Listener
+from hil.engine.commissioning.doctor._buses import Listener
 
 STATUS = Stream("status", "bus 'rmcu'", ("speed_rad_s",), ("rad/s",), 0.001, counting=Counting("8 bits", 256))
 

@@ -2,7 +2,7 @@
 
 import datetime
 
-from hil.engine.commissioning.doctor._dates import findings_of_dates
+from hil.engine.commissioning.doctor.examination import findings_of_dates
 from tests.benches_for_tests import sim_bench
 
 TODAY = datetime.date(2026, 11, 22)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from hil.engine.bench.bench_tables import BenchFile, Bus
-from hil.engine.commissioning.doctor._stops import findings_of_stops
+from hil.engine.commissioning.doctor.examination import findings_of_stops
 from hil.engine.stop.emergency_stop import latch, reset
 from tests.benches_for_tests import SIM
 

@@ -1,12 +1,20 @@
-"""MDF4 with asammdf: channels in groups, each group with time stamps of its own."""
+"""ASAM MDF4 by asammdf: files opened, read and written.
+
+Opens MDF files with asammdf.
+
+MDF4 with asammdf: channels in groups, each group with time stamps of its own.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import datetime
+import io
+import logging
 import warnings
 from collections.abc import Collection
 from pathlib import Path
+from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -18,7 +26,42 @@ from hil.core.recording._column_map import AS_NAMED, ColumnMap
 from hil.core.recording._evidence import EVIDENCE, evidence_of, has_evidence, take_evidence
 from hil.core.recording._foreign_table import Column, recording_of
 from hil.core.recording._table import BLOCK, Array, Recording, refuse_too_large
-from hil.core.recording.mdf_file import open_mdf
+
+
+def open_mdf(path: Path) -> Any:
+    """asammdf's MDF of a file, to be closed by a `with`.
+
+    Raises:
+        Exception: of many kinds, for whatever is broken.
+    """
+    from asammdf import MDF  # slow to import, and seldom needed
+    from asammdf.blocks.mdf_v4 import MDF4
+
+    # What it finds odd in a file it also prints, with a traceback; what matters of it is stated here.
+    logging.getLogger("asammdf").setLevel(logging.CRITICAL + 1)
+    MDF4.__del__ = _close
+    try:
+        return MDF(path)
+    except Exception as error:
+        _close_files(error.__traceback__)
+        raise
+
+
+def _close_files(trace: TracebackType | None) -> None:
+    """Close what asammdf opened before it found a file broken: it leaves that to the garbage collector."""
+    while trace is not None:
+        for held in list(trace.tb_frame.f_locals.values()):
+            for one in (held, getattr(held, "_file", None)):
+                if isinstance(one, io.BufferedReader):
+                    one.close()
+        trace = trace.tb_next
+
+
+def _close(mdf: Any) -> None:
+    """Close what a broken file kept from being set up: asammdf's own way prints a traceback then."""
+    with contextlib.suppress(AttributeError):
+        mdf.close()
+
 
 _EVENT_TICKS = 1_000_000  # in a second
 _BEGINS = (b"MDF", b"UnFinMF")  # finished, and not
