@@ -6,6 +6,11 @@ from drivers.bus_load import bits_on_the_wire, most_bits_on_the_wire
 from drivers.can_adapter import CanSettings, open_can
 from drivers.device import (
     Device,
+    Examinable,
+    Examined,
+    Finding,
+    Identifies,
+    Incomplete,
     MotorControl,
     SaysDamage,
     SaysEmergency,
@@ -16,12 +21,11 @@ from drivers.device import (
     WheelLoad,
 )
 from drivers.dyno import DynoDriver, DynoNodes, DynoTable, read_dyno
-from drivers.examination import Examinable, Examined, Finding, Identifies, Incomplete
+from drivers.echoes import NewestFrames
 from drivers.frame_source import Binding, CountedBy, FrameSource
 from drivers.listening_wire import ListeningWire, LogWire
 from drivers.loop import BusLoop
 from drivers.measurement import SampleAssembler
-from drivers.newest_frames import NewestFrames
 from drivers.panel import Panel, PanelTable
 from drivers.ram import RamMonitor, RamTable
 from drivers.rmcu import RmcuDriver, RmcuTable, parameters_of, read_rmcu

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drivers.newest_frames import least_bytes
+from drivers.echoes import least_bytes
 from drivers.samples import Counting, Samples, Stream
 from hil.core.can.frames import ERROR_FRAME, EXTENDED, FrameBlock, crc8_of
 from hil.core.can.signals import Signal, bits_at, number_at

@@ -16,7 +16,7 @@ from typing import Any
 import can
 from can.interfaces.slcan import slcanBus
 
-from drivers import linux_errors as errors
+from drivers import bus_health as errors
 from drivers.serial_line import written_at_once
 
 _QUIET_S = 0.02  # after this long without an answer the adapter has answered all that opening asks

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from hil.analysis.comparison import ComparedRun
 from hil.core.result import RunResult
-from reports import quantities
+from reports import labels
 from reports.figure import Figure
 from reports.labels import criterion_title
 from reports.origin import Origin
@@ -32,7 +32,7 @@ def autotune_page(
         title=title,
         headline="No controller confirmed"
         if best is None
-        else f"Worst margin measured {quantities.share(best.worst)}",
+        else f"Worst margin measured {labels.share(best.worst)}",
         tone="pass" if closing.content else "fail",
         lead=closing_verdict(closing),
         notes=(consented,),
@@ -85,9 +85,9 @@ def _effects(closing: Closing) -> Table:
         for name, value in effect.use.values.items():
             if name not in effect.standard_error:
                 continue
-            error = quantities.number(effect.standard_error[name])
-            number = value if isinstance(value, str) else quantities.number(value)
-            rows.append((effect.use.id, quantities.chance(effect.confidence), name, number, error))
+            error = labels.number(effect.standard_error[name])
+            number = value if isinstance(value, str) else labels.number(value)
+            rows.append((effect.use.id, labels.chance(effect.confidence), name, number, error))
     return Table(("effect", "chance", "parameter", "value", "standard error"), tuple(rows), 3)
 
 
@@ -97,8 +97,8 @@ def _margins(closing: Closing) -> Table:
     rows = [
         (
             criterion_title(name),
-            quantities.share(closing.before_margins.get(name)),
-            *(quantities.share(of[name]) for of in (best.predicted.margins, best.expected, best.measured)),
+            labels.share(closing.before_margins.get(name)),
+            *(labels.share(of[name]) for of in (best.predicted.margins, best.expected, best.measured)),
         )
         for name in best.measured
     ]
@@ -106,8 +106,8 @@ def _margins(closing: Closing) -> Table:
     rows.append(
         (
             "worst",
-            quantities.share(closing.before_worst),
-            *(quantities.share(min(of.values())) for of in least),
+            labels.share(closing.before_worst),
+            *(labels.share(min(of.values())) for of in least),
         )
     )
     return Table(("criterion", "before", "predicted", "expected", "measured"), tuple(rows))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hil.core.recording import Recording
 from hil.core.result import Identity, RunResult, Zero
-from reports import quantities
+from reports import labels
 from reports.provenance import Fact
 
 TABLE = "identification"
@@ -53,15 +53,15 @@ def _readings(zero: Zero) -> str:
     if zero.before is None:
         return f"not read: {zero.reason}"
     unit = zero.unit
-    offset = f"{quantities.quantity(zero.before, unit, 3)} before ({_allowed(zero.within, unit)})"
+    offset = f"{labels.quantity(zero.before, unit, 3)} before ({_allowed(zero.within, unit)})"
     if zero.after is None or zero.drift is None:
         return f"{offset}; not read after: {zero.reason}"
-    drift = f"drift {quantities.quantity(zero.drift, unit, 3)} ({_allowed(zero.drift_within, unit)})"
-    return f"{offset}, {quantities.quantity(zero.after, unit, 3)} after: {drift}"
+    drift = f"drift {labels.quantity(zero.drift, unit, 3)} ({_allowed(zero.drift_within, unit)})"
+    return f"{offset}, {labels.quantity(zero.after, unit, 3)} after: {drift}"
 
 
 def _allowed(limit: float | None, unit: str) -> str:
-    return "no limit stated" if limit is None else f"limit {quantities.nominal(limit)} {unit}"
+    return "no limit stated" if limit is None else f"limit {labels.nominal(limit)} {unit}"
 
 
 def _zero_state(zero: Zero) -> str:

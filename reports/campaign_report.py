@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 
 from hil.analysis.campaigns import CONFIDENCE, Findings, OfController, OfCriterion
-from reports import drawings, quantities
+from reports import drawings, labels
 from reports.drawings import Drawing
 from reports.labels import Label, criterion_title
 from reports.origin import Origin
@@ -32,7 +32,7 @@ def campaign_page(
     return Page(
         kind="Campaign",
         title=title,
-        headline=f"{quantities.share(found.least_share)} passed",
+        headline=f"{labels.share(found.least_share)} passed",
         tone="quiet" if reached is None else "pass" if reached else "fail",
         lead=_lead(found, wanted),
         notes=(description.strip(),) if description.strip() else (),
@@ -48,7 +48,7 @@ def _lead(found: Findings, wanted: float | None) -> str:
     if wanted is None:
         return f"{count}{several}. No required pass rate was specified."
     reached = "reached" if passed(found, wanted) else "not reached"
-    return f"{count}{several}. Required pass rate {quantities.share(wanted)}: {reached}."
+    return f"{count}{several}. Required pass rate {labels.share(wanted)}: {reached}."
 
 
 def _parts(found: Findings, drawn: Mapping[str, Drawing], *, random: bool) -> list[Part]:
@@ -67,7 +67,7 @@ def _parts(found: Findings, drawn: Mapping[str, Drawing], *, random: bool) -> li
     if found.inputs:
         words = (
             "Rank correlation (Spearman's ρ) of each criterion's value with each input. 1: both "
-            f"rise together (red), {quantities.MINUS}1: one falls as the other rises (blue), 0: unrelated."
+            f"rise together (red), {labels.MINUS}1: one falls as the other rises (blue), 0: unrelated."
         )
         maps = tuple(_correlations(one, found) for one in found.controllers)
         parts.append(Part("sensitivities", "What the criteria depend on", words, maps=maps))
@@ -92,9 +92,9 @@ def _first(found: Findings, drawn: Mapping[str, Drawing]) -> Part | None:
         (
             criterion_title(criterion.id),
             name_of(one),
-            quantities.share(criterion.share.value),
-            *(quantities.number(criterion.quantile(share)) for share in (0.5, 0.99)),
-            f"{_limit(criterion)} {quantities.unit(criterion.unit)}".strip(),
+            labels.share(criterion.share.value),
+            *(labels.number(criterion.quantile(share)) for share in (0.5, 0.99)),
+            f"{_limit(criterion)} {labels.unit(criterion.unit)}".strip(),
         )
         for one, criterion in ranked[:_ROWS]
     )
@@ -125,10 +125,10 @@ def _criteria(one: OfController, found: Findings) -> Table:
     rows = tuple(
         (
             criterion_title(criterion.id),
-            quantities.share(criterion.share.value) if criterion.limited else quantities.DASH,
+            labels.share(criterion.share.value) if criterion.limited else labels.DASH,
             _limit(criterion),
-            *(quantities.number(criterion.quantile(share)) for share in (0.01, 0.5, 0.99)),
-            quantities.unit(criterion.unit),
+            *(labels.number(criterion.quantile(share)) for share in (0.01, 0.5, 0.99)),
+            labels.unit(criterion.unit),
         )
         for criterion in one.criteria
     )
@@ -138,9 +138,9 @@ def _criteria(one: OfController, found: Findings) -> Table:
 def _limit(one: OfCriterion) -> str:
     if one.below:
         return f"< {one.below}"
-    bounds = [f"≥ {quantities.nominal(one.lower)}"] if one.lower is not None else []
-    bounds += [f"≤ {quantities.nominal(one.upper)}"] if one.upper is not None else []
-    return " ".join(bounds) or quantities.DASH
+    bounds = [f"≥ {labels.nominal(one.lower)}"] if one.lower is not None else []
+    bounds += [f"≤ {labels.nominal(one.upper)}"] if one.upper is not None else []
+    return " ".join(bounds) or labels.DASH
 
 
 def _distributions(found: Findings) -> dict[str, Drawing]:
@@ -164,12 +164,12 @@ def _in_words(first: OfCriterion, each: dict[str, OfCriterion]) -> str:
     """For who cannot see the histogram."""
     lines = [f"Histogram of {first.id} in {first.unit}."]
     for name, one in each.items():
-        low, middle, high = (quantities.number(one.quantile(share)) for share in (0.0, 0.5, 1.0))
+        low, middle, high = (labels.number(one.quantile(share)) for share in (0.0, 0.5, 1.0))
         lines.append(f"{name or 'Values'}: from {low} to {high}, median {middle}.")
     if first.upper is not None:
-        lines.append(f"At most {quantities.nominal(first.upper)}.")
+        lines.append(f"At most {labels.nominal(first.upper)}.")
     if first.lower is not None:
-        lines.append(f"At least {quantities.nominal(first.lower)}.")
+        lines.append(f"At least {labels.nominal(first.lower)}.")
     return " ".join(lines)
 
 
@@ -187,7 +187,7 @@ def _correlations(one: OfController, found: Findings) -> Map:
 
 
 def _cell(value: float) -> Cell:
-    return Cell(quantities.number(value, 2), 0.0 if math.isnan(value) else min(1.0, abs(value)), value < 0)
+    return Cell(labels.number(value, 2), 0.0 if math.isnan(value) else min(1.0, abs(value)), value < 0)
 
 
 def _short(column: str) -> str:
@@ -202,15 +202,15 @@ def _worst(one: OfController, found: Findings) -> Table:
         known = criteria[case.binding].correlations
         order = sorted(case.inputs, key=lambda name: -abs(_or_zero(known.get(name, 0.0))))
         words = ", ".join(
-            f"{_short(name)} {quantities.quantity(case.inputs[name], found.inputs[name])}"
+            f"{_short(name)} {labels.quantity(case.inputs[name], found.inputs[name])}"
             for name in order[:_INPUTS_SHOWN]
         )
         rows.append(
             (
                 str(case.simulation),
-                quantities.share(case.margin),
+                labels.share(case.margin),
                 criterion_title(case.binding),
-                words or quantities.DASH,
+                words or labels.DASH,
             )
         )
     return Table(("simulation", "margin", "binding criterion", "inputs"), tuple(rows), 0, 2)

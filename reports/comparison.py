@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from hil.analysis.comparison import Comparison, CriterionRow, ResponseRow, differences
 from hil.core.result import Segment
-from reports import quantities
+from reports import labels
 from reports.labels import channel_label, criterion_title
 from reports.members import controller_name
 from reports.overlay_figures import overlay
@@ -32,7 +32,7 @@ def lead(found: Comparison) -> str:
     """How far each run is from the first, in one sentence."""
     first, *others = found.runs
     lines = [
-        f"{run.name} {quantities.share(distance)}"
+        f"{run.name} {labels.share(distance)}"
         for run, distance in zip(others, found.distances[1:], strict=True)
         if distance is not None
     ]
@@ -44,9 +44,9 @@ def lead(found: Comparison) -> str:
 def value_text(row: CriterionRow, run: int) -> str:
     """Value of a criterion in a run, how far it is from the first run's, and a mark where it failed."""
     value, relative = row.values[run], row.relative[run]
-    text = quantities.number(value, significant=4)
+    text = labels.number(value, significant=4)
     if run and relative is not None:
-        text += f" ({quantities.share(relative, signed=True)})"
+        text += f" ({labels.share(relative, signed=True)})"
     return text + _MARKS.get(row.verdicts[run], "")
 
 
@@ -74,7 +74,7 @@ def _first(found: Comparison) -> Part | None:
         (
             criterion_title(row.id),
             *(value_text(row, run) for run in range(len(names))),
-            quantities.unit("" if row.unit == "1" else row.unit),
+            labels.unit("" if row.unit == "1" else row.unit),
             _limit(row.limit),
         )
         for row in ranked[:_ROWS]
@@ -97,7 +97,7 @@ def _limit(text: str) -> str:
     """'≥ -10 ≤ 10' as '−10 to 10'."""
     both = re.fullmatch(r"≥ (\S+) ≤ (\S+)", text)
     joined = f"{both[1]} to {both[2]}" if both else text
-    return re.sub(r"(?<!\S)-(?=\d)", quantities.MINUS, joined)
+    return re.sub(r"(?<!\S)-(?=\d)", labels.MINUS, joined)
 
 
 def _parts(found: Comparison) -> list[Part]:
@@ -130,7 +130,7 @@ def _runs(found: Comparison) -> Table:
     for run, distance in zip(found.runs, found.distances, strict=True):
         about = run.recording.metadata.get("run", {})
         simulated = about.get("simulated", "").lower() == "true"
-        share = quantities.share(distance)
+        share = labels.share(distance)
         rows.append(
             (
                 run.name,
@@ -172,7 +172,7 @@ def _criteria(found: Comparison, names: tuple[str, ...]) -> Table:
         (
             criterion_title(row.id),
             *(value_text(row, run) for run in range(len(names))),
-            quantities.unit("" if row.unit == "1" else row.unit),
+            labels.unit("" if row.unit == "1" else row.unit),
             _limit(row.limit),
         )
         for row in found.criteria
@@ -195,11 +195,11 @@ def _responses(found: Comparison, names: tuple[str, ...]) -> Table:
 def _gap(row: ResponseRow, run: int) -> str:
     """How far a response is from the first run's, marked where ripple alone could make that."""
     within = run > 0 and row.within_ripple(run)
-    return ("≈ " if within else "") + quantities.share(row.gaps[run])
+    return ("≈ " if within else "") + labels.share(row.gaps[run])
 
 
 def _segment_part(found: Comparison, segment: Segment) -> Part:
-    speed = quantities.nominal(segment.initial_speed_km_h, "km/h")
+    speed = labels.nominal(segment.initial_speed_km_h, "km/h")
     loaded = {
         other.controller for run in found.runs for other in run.result.segments if other.id == segment.id
     }

@@ -9,7 +9,7 @@ import numpy as np
 from hil.core.channels import TIME
 from hil.core.recording import Recording
 from hil.core.result import RunResult
-from reports import provenance, quantities
+from reports import labels, provenance
 from reports.bench_state import identification_facts, zero_facts
 from reports.criteria import CriteriaTable, CriterionRow, count_by_verdict, criteria_table
 from reports.figure import Section
@@ -160,8 +160,7 @@ def content(recording: Recording, result: RunResult | None) -> Content:
         segments=_segments(result),
         channels=() if result else tuple(_channel(recording, n) for n in recording.channels if n != TIME),
         events=tuple(
-            EventRow(quantities.number(e.time_s, 3), e.kind.replace("_", " "), e.text)
-            for e in recording.events
+            EventRow(labels.number(e.time_s, 3), e.kind.replace("_", " "), e.text) for e in recording.events
         ),
         notes=tuple(recording.notes),
         sections=tuple(sections(recording, result)),
@@ -242,11 +241,11 @@ def _segments(result: RunResult | None) -> tuple[SegmentRow, ...]:
         SegmentRow(
             id=segment.id,
             kind=segment.kind,
-            controller=segment.controller or quantities.DASH,
-            speed=quantities.nominal(segment.initial_speed_km_h),
-            start=quantities.number(segment.start_s, 3),
-            step=quantities.number(segment.step_s, 3) if segment.kind == "step" else quantities.DASH,
-            end=quantities.number(segment.end_s, 3),
+            controller=segment.controller or labels.DASH,
+            speed=labels.nominal(segment.initial_speed_km_h),
+            start=labels.number(segment.start_s, 3),
+            step=labels.number(segment.step_s, 3) if segment.kind == "step" else labels.DASH,
+            end=labels.number(segment.end_s, 3),
         )
         for segment in (result.segments if result else ())
     )
@@ -260,16 +259,16 @@ def _channel(recording: Recording, name: str) -> ChannelRow:
         if finite.size
         else (np.nan,) * 4
     )
-    decimals = quantities.decimals_for(low, high)
+    decimals = labels.decimals_for(low, high)
     missing = 100.0 * (1 - finite.size / len(values)) if len(values) else 0.0
     label = channel_label(name)
     return ChannelRow(
         name=name,
         meaning="" if label.text == name else label.text,
-        unit=quantities.unit(channel_unit(name, recording.metadata.get("units"))),
-        lowest=quantities.number(low, decimals),
-        mean=quantities.number(mean, decimals),
-        highest=quantities.number(high, decimals),
-        deviation=quantities.number(deviation),
-        missing=quantities.quantity(missing, "%", significant=2) if missing else quantities.DASH,
+        unit=labels.unit(channel_unit(name, recording.metadata.get("units"))),
+        lowest=labels.number(low, decimals),
+        mean=labels.number(mean, decimals),
+        highest=labels.number(high, decimals),
+        deviation=labels.number(deviation),
+        missing=labels.quantity(missing, "%", significant=2) if missing else labels.DASH,
     )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import get_args
 
 from hil.core.result import CriterionResult, CriterionVerdict, RunResult, Segment
-from reports import quantities
+from reports import labels
 from reports.members import controller_name
 
 _USUAL_DECIMALS, _MOST_DECIMALS = 4, 9
@@ -76,9 +76,9 @@ def in_words(criterion: CriterionResult) -> str:
     """One line: what was found against what was allowed; for messages."""
     if criterion.value is None and criterion.reason:
         return criterion.reason
-    value = quantities.quantity(criterion.value, criterion.unit, _decimals(criterion))
+    value = labels.quantity(criterion.value, criterion.unit, _decimals(criterion))
     limit = _limit(criterion)
-    text = f"{value}, allowed is {limit}{quantities.THIN}{quantities.unit(criterion.unit)}".rstrip()
+    text = f"{value}, allowed is {limit}{labels.THIN}{labels.unit(criterion.unit)}".rstrip()
     return f"{text}; {criterion.reason}" if criterion.reason else text
 
 
@@ -87,7 +87,7 @@ def _group_title(criterion: CriterionResult, segments: dict[str, Segment]) -> st
     segment = segments.get(id_)
     if segment is None:
         return f"{id_} (not executed)" if criterion.verdict == "not_judged" else "Whole run"
-    speed = quantities.nominal(segment.initial_speed_km_h, "km/h")
+    speed = labels.nominal(segment.initial_speed_km_h, "km/h")
     name = controller_name(segment.controller) if segment.controller else segment.kind.capitalize()
     return f"{name}, {speed} ({segment.id})"
 
@@ -97,10 +97,10 @@ def _row(criterion: CriterionResult, definition: int, shown: set[str]) -> Criter
     return CriterionRow(
         id=criterion.id,
         title=criterion.title or criterion.id.rpartition(".")[2].replace("_", " ").capitalize(),
-        value=quantities.number(criterion.value, decimals),
-        unit="" if criterion.unit == "1" else quantities.unit(criterion.unit),  # a share is a number
+        value=labels.number(criterion.value, decimals),
+        unit="" if criterion.unit == "1" else labels.unit(criterion.unit),  # a share is a number
         limit=_limit(criterion),
-        margin=quantities.share(criterion.margin),
+        margin=labels.share(criterion.margin),
         verdict=criterion.verdict,
         unmet=criterion.failed or criterion.verdict in ("error", "not_judged"),
         reason=criterion.reason if criterion.reason not in shown else _AS_ABOVE,
@@ -111,7 +111,7 @@ def _row(criterion: CriterionResult, definition: int, shown: set[str]) -> Criter
 
 def _decimals(criterion: CriterionResult) -> int:
     """Four digits of the value, and more where its distance from a limit would round to nothing."""
-    decimals = min(quantities.decimals_for(criterion.value), _USUAL_DECIMALS)
+    decimals = min(labels.decimals_for(criterion.value), _USUAL_DECIMALS)
     value, limits = criterion.value, (criterion.lower, criterion.upper)
     room = min((abs(limit - value) for limit in limits if limit is not None), default=0.0) if value else 0.0
     while room and room < 10.0**-decimals and decimals < _MOST_DECIMALS:
@@ -122,8 +122,8 @@ def _decimals(criterion: CriterionResult) -> int:
 def _bound(value: float | None) -> str:
     """A limit as it was chosen; one that was measured (another segment's value) with five digits."""
     if value is not None and float(f"{value:.6g}") != value:
-        return quantities.number(value, significant=5)
-    return quantities.nominal(value)
+        return labels.number(value, significant=5)
+    return labels.nominal(value)
 
 
 def _limit(criterion: CriterionResult) -> str:
@@ -131,5 +131,5 @@ def _limit(criterion: CriterionResult) -> str:
     if criterion.lower is not None and criterion.upper is not None:
         return f"{lower} to {upper}"
     if criterion.upper is not None:
-        return f"{'<' if criterion.below else '≤'}{quantities.THIN}{upper}"
-    return f"≥{quantities.THIN}{lower}" if criterion.lower is not None else quantities.DASH
+        return f"{'<' if criterion.below else '≤'}{labels.THIN}{upper}"
+    return f"≥{labels.THIN}{lower}" if criterion.lower is not None else labels.DASH

@@ -10,7 +10,7 @@ import numpy as np
 from hil.core.channels import CHANNELS, TIME
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, RunResult, Segment
-from reports import quantities
+from reports import labels
 from reports.figure import Figure, Level, Mark
 from reports.labels import Label
 from reports.members import members
@@ -89,14 +89,14 @@ def _extreme(
     at = int(np.nanargmax(turn * found[1]))
     when_s, value = float(found[0][at] - segment.step_s), float(found[1][at])
     unit = CHANNELS[channel].unit
-    label = f"{name.plain()}: {quantities.quantity(value, unit)} at {quantities.quantity(when_s, 's', 3)}"
+    label = f"{name.plain()}: {labels.quantity(value, unit)} at {labels.quantity(when_s, 's', 3)}"
     return Mark(when_s, value, label, role)
 
 
 def _as_chosen(limit: float, unit: str) -> str:
     """A limit that somebody chose as written, another segment's value with four digits."""
     chosen = float(f"{limit:.6g}") == limit
-    return quantities.nominal(limit, unit) if chosen else quantities.quantity(limit, unit)
+    return labels.nominal(limit, unit) if chosen else labels.quantity(limit, unit)
 
 
 def _levels(

@@ -14,7 +14,7 @@ from hil.analysis.control_design import (
     Design,
 )
 from hil.core.channels import COMFORT_BAND_HZ
-from reports import quantities
+from reports import labels
 from reports.drawings import Drawing
 from reports.figure import Band, Figure, Level, Trace
 from reports.labels import Label
@@ -41,11 +41,11 @@ def design_page(
         title=title,
         headline=f"{_LOOPS[found.chosen]}: {'stable' if chosen.stable else 'NOT stable'}",
         tone="pass" if fine else "error",
-        lead=f"Largest sensitivity {quantities.number(chosen.sensitivity_peak, 2)} at "
-        f"{quantities.quantity(chosen.sensitivity_peak_hz, 'Hz', 1)}, gain margin "
-        f"{quantities.quantity(chosen.gain_margin_db, 'dB', 1)}, phase margin "
-        f"{quantities.number(chosen.phase_margin_deg, 1)}°; of {worst.source} at worst "
-        f"{quantities.number(worst.sensitivity_peak, 2)}.",
+        lead=f"Largest sensitivity {labels.number(chosen.sensitivity_peak, 2)} at "
+        f"{labels.quantity(chosen.sensitivity_peak_hz, 'Hz', 1)}, gain margin "
+        f"{labels.quantity(chosen.gain_margin_db, 'dB', 1)}, phase margin "
+        f"{labels.number(chosen.phase_margin_deg, 1)}°; of {worst.source} at worst "
+        f"{labels.number(worst.sensitivity_peak, 2)}.",
         notes=(*found.warnings, *found.notes),
         parts=(
             Part("controller", "Controller", "", (_controller(found, summary),)),
@@ -68,17 +68,17 @@ _MARGINS = (
 def _controller(found: Design, summary: Mapping[str, Any]) -> Table:
     wsc = found.controller.wsc
     rows = [
-        ("proportional gain K_p", quantities.number(wsc.proportional_gain), "N m s/rad"),
-        ("integral gain K_i", quantities.number(wsc.integral_gain), "N m/rad"),
-        ("pole p", quantities.number(found.spec.pole_rad_s), "rad/s"),
-        ("inertia", quantities.number(summary["inertia_kg_m2"]), "kg m²"),
-        ("resonance of the plant", quantities.number(summary["resonance_hz"]), "Hz"),
-        ("dead time of the plant", quantities.number(1e3 * summary["dead_time_s"]), "ms"),
+        ("proportional gain K_p", labels.number(wsc.proportional_gain), "N m s/rad"),
+        ("integral gain K_i", labels.number(wsc.integral_gain), "N m/rad"),
+        ("pole p", labels.number(found.spec.pole_rad_s), "rad/s"),
+        ("inertia", labels.number(summary["inertia_kg_m2"]), "kg m²"),
+        ("resonance of the plant", labels.number(summary["resonance_hz"]), "Hz"),
+        ("dead time of the plant", labels.number(1e3 * summary["dead_time_s"]), "ms"),
     ]
     if wsc.lead is not None:
         rows += [
-            ("lead angle", quantities.number(found.spec.lead_deg), "°"),
-            ("lead frequency", quantities.number(found.spec.lead_hz), "Hz"),
+            ("lead angle", labels.number(found.spec.lead_deg), "°"),
+            ("lead frequency", labels.number(found.spec.lead_hz), "Hz"),
         ]
     if summary["notch"] is not None:
         rows += [
@@ -100,11 +100,11 @@ def _table(name: str, loops: list[tuple[str, Any]], chosen: str) -> Table:
     rows = tuple(
         (
             _LOOPS[loop] + (" (chosen)" if loop == chosen else ""),
-            quantities.number(m.sensitivity_peak, 3),
-            quantities.number(m.sensitivity_peak_hz, 1),
-            quantities.number(m.comfort_peak, 3),
-            quantities.number(m.gain_margin_db, 1),
-            quantities.number(m.phase_margin_deg, 1),
+            labels.number(m.sensitivity_peak, 3),
+            labels.number(m.sensitivity_peak_hz, 1),
+            labels.number(m.comfort_peak, 3),
+            labels.number(m.gain_margin_db, 1),
+            labels.number(m.phase_margin_deg, 1),
             _delay(m.delay_margin_s),
             "yes" if m.stable else "NO",
         )
@@ -116,13 +116,13 @@ def _table(name: str, loops: list[tuple[str, Any]], chosen: str) -> Table:
 
 def _delay(margin_s: float) -> str:
     """In ms; far beyond what any dead time of a driveline is, digits say nothing."""
-    return f">{quantities.THIN}1000" if margin_s > 1.0 else quantities.number(1e3 * margin_s, 1)
+    return f">{labels.THIN}1000" if margin_s > 1.0 else labels.number(1e3 * margin_s, 1)
 
 
 def _first(found: Design) -> Part:
     """The limits that a loop is accepted by, and the sensitivity over frequency."""
     m = found.loop(found.chosen).margins
-    deg = quantities.unit("°")
+    deg = labels.unit("°")
     rows = (
         _judged("Largest sensitivity |S|max", m.sensitivity_peak, LARGEST_SENSITIVITY, "", most=True),
         _judged("Gain margin", m.gain_margin_db, LEAST_GAIN_MARGIN_DB, "dB", most=False),
@@ -136,8 +136,8 @@ def _first(found: Design) -> Part:
 def _judged(name: str, value: float, limit: float, unit: str, *, most: bool) -> tuple[str, str, str, str]:
     met = value <= limit if most else value >= limit
     sign = "≤" if most else "≥"
-    of_limit = f"{quantities.nominal(limit)} {unit}".strip()
-    return name, quantities.quantity(value, unit, 2), f"{sign} {of_limit}", "met" if met else "not met"
+    of_limit = f"{labels.nominal(limit)} {unit}".strip()
+    return name, labels.quantity(value, unit, 2), f"{sign} {of_limit}", "met" if met else "not met"
 
 
 def _sensitivity(found: Design) -> Figure:
@@ -155,7 +155,7 @@ def _sensitivity(found: Design) -> Figure:
         if loop.name in roles
     )
     limit = 20.0 * float(np.log10(LARGEST_SENSITIVITY))
-    name = f"{COMFORT_BAND_HZ[0]:g}{quantities.DASH}{COMFORT_BAND_HZ[1]:g}{quantities.THIN}Hz"
+    name = f"{COMFORT_BAND_HZ[0]:g}{labels.DASH}{COMFORT_BAND_HZ[1]:g}{labels.THIN}Hz"
     return Figure(
         "sensitivity",
         Label("Sensitivity of the wheel speed control"),

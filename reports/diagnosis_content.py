@@ -19,10 +19,9 @@ from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.errors.wording import multiple, share
 from hil.core.model import parameter_unit
-from reports import quantities
-from reports.diagnosis_figures import WINDOW_S, overlay_figures, shown_overlay
+from reports import labels
+from reports.diagnosis_figures import WINDOW_S, GapBars, GapRow, overlay_figures, shown_overlay
 from reports.diagnosis_names import alternatives_table, considered_table, effects_table, effects_text
-from reports.gap_bars import GapBars, GapRow
 from reports.labels import Label, channel_label, parameter_title
 from reports.parts import Cell, Map, Part, Table
 
@@ -160,9 +159,9 @@ def _gaps(found: Diagnosis) -> tuple[Table, ...]:
         rows = tuple(
             (
                 channel_label(c).text,
-                *(quantities.share(v, 2, digits=3) for v in _figures(before[c], after[c])),
-                quantities.factor(before[c].noises),
-                quantities.factor(after[c].noises),
+                *(labels.share(v, 2, digits=3) for v in _figures(before[c], after[c])),
+                labels.factor(before[c].noises),
+                labels.factor(after[c].noises),
             )
             for c in after
         )
@@ -215,9 +214,9 @@ def _conditions(when: str, gaps: GapMap) -> Map:
 
 def _cell(ratio: float) -> Cell:
     if not np.isfinite(ratio):
-        return Cell(quantities.DASH, 0.0)
+        return Cell(labels.DASH, 0.0)
     shade = float(np.clip(np.log(max(ratio, 1.0)) / np.log(_DARKEST), 0.0, 1.0))
-    return Cell(quantities.factor(ratio), round(shade, 3))
+    return Cell(labels.factor(ratio), round(shade, 3))
 
 
 def _start_text(found: Diagnosis) -> str:
@@ -245,10 +244,10 @@ def _changes(changes: Mapping[str, tuple[float, float, float]]) -> Table:
     rows = tuple(
         (
             parameter_title(name),
-            quantities.number(old),
-            quantities.number(new),
-            quantities.number(error, significant=2),
-            quantities.share(new / old - 1.0, 2, signed=True) if old else quantities.DASH,
+            labels.number(old),
+            labels.number(new),
+            labels.number(error, significant=2),
+            labels.share(new / old - 1.0, 2, signed=True) if old else labels.DASH,
             _unit(name),
         )
         for name, (old, new, error) in changes.items()
@@ -268,8 +267,8 @@ def _consequences(found: Diagnosis) -> Table:
     rows = tuple(
         (
             _FIGURES.get(name, name),
-            quantities.number(v["before"]),
-            quantities.number(v["after"]),
+            labels.number(v["before"]),
+            labels.number(v["after"]),
             _uncertain(v.get("after_standard_error")),
         )
         for name, v in found.consequences.items()
@@ -280,8 +279,8 @@ def _consequences(found: Diagnosis) -> Table:
 def _uncertain(standard_error: float | None) -> str:
     """Half a 95 % interval, to the two digits that it is known to."""
     if standard_error is None:
-        return quantities.DASH
-    return quantities.number(_HALF_INTERVAL * standard_error, significant=2)
+        return labels.DASH
+    return labels.number(_HALF_INTERVAL * standard_error, significant=2)
 
 
 def _if_any(table: Table) -> tuple[Table, ...]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from hil.analysis.diagnosis import BOOTSTRAP_DRAWS, Considered, Diagnosis, NamedEffect
 from hil.core.effects import EFFECTS
-from reports import quantities
+from reports import labels
 from reports.labels import channel_label, parameter_title, with_titles
 from reports.parts import Table
 
@@ -23,7 +23,7 @@ def effects_text(found: Diagnosis) -> str:
     drops = [e.drop for e in found.effects if e.drop is not None]
     if not drops or found.by_chance is None:
         return text
-    chance = quantities.number(float(f"{found.by_chance:.2g}"), significant=2)
+    chance = labels.number(float(f"{found.by_chance:.2g}"), significant=2)
     return (
         f"{text} Evidence: each named effect reduces the squared error by {_evidence(min(drops))} noise "
         f"variances or more; false-alarm level {chance}, the largest of {BOOTSTRAP_DRAWS} noise draws."
@@ -40,15 +40,15 @@ def effects_table(found: Diagnosis) -> Table:
     for e in found.effects:
         units = {p.name: p.unit for p in EFFECTS[e.use.id].parameters}
         for index, (name, value) in enumerate(e.use.values.items()):
-            shown = value if isinstance(value, str) else quantities.quantity(value, units.get(name, ""))
+            shown = value if isinstance(value, str) else labels.quantity(value, units.get(name, ""))
             error = e.standard_error.get(name)
             rows.append(
                 (
                     EFFECTS[e.use.id].title if index == 0 else "",
                     parameter_title(name),
                     shown,
-                    quantities.number(error, significant=2) if error is not None else "",
-                    quantities.chance(e.confidence) if index == 0 else "",
+                    labels.number(error, significant=2) if error is not None else "",
+                    labels.chance(e.confidence) if index == 0 else "",
                     _place(e) if index == 0 else "",
                 )
             )
@@ -70,7 +70,7 @@ def considered_table(found: Diagnosis) -> Table:
         (
             ", ".join(EFFECTS[c.id].title + (f" ({with_titles(c.about)})" if c.about else "") for c in group),
             _from_to([_evidence(c.score) for c in group]),
-            _from_to([quantities.factor(c.left) for c in group]),
+            _from_to([labels.factor(c.left) for c in group]),
             reason,
         )
         for reason, group in alike.items()
@@ -85,13 +85,13 @@ def _from_to(texts: list[str]) -> str:
 
 def _evidence(drop: float) -> str:
     """A drop in noise variances; beyond what anybody would doubt it says that alone."""
-    return f">{quantities.THIN}10⁶" if drop >= _BEYOND_DOUBT else quantities.number(drop, significant=2)
+    return f">{labels.THIN}10⁶" if drop >= _BEYOND_DOUBT else labels.number(drop, significant=2)
 
 
 def alternatives_table(found: Diagnosis) -> Table:
     """Other names for the same gap, each with the test that separates it."""
     rows = tuple(
-        (_about(a.use.id, a.use.values), quantities.chance(a.confidence), a.separating_test, a.plan or "")
+        (_about(a.use.id, a.use.values), labels.chance(a.confidence), a.separating_test, a.plan or "")
         for a in found.alternatives
     )
     return Table(("effect", "confidence", "separating test", "plan for hil run"), rows, 1, 2)

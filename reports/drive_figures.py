@@ -10,7 +10,7 @@ import numpy as np
 from hil.core.errors import HilError
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, Segment
-from reports import quantities
+from reports import labels
 from reports.figure import Band, Figure, Mark, Section, Trace, not_drawn
 from reports.labels import Label, channel_label, channel_unit
 from reports.stretch import cut, line
@@ -110,7 +110,7 @@ def _play(recording: Recording, segment: Segment, criteria: Criteria) -> tuple[l
         if at_s > TO_S:
             continue
         if one.left_s is not None:
-            length = quantities.quantity(1000 * (one.contact_s - one.left_s), "ms", significant=3)
+            length = labels.quantity(1000 * (one.contact_s - one.left_s), "ms", significant=3)
             bands.append(Band(one.left_s - segment.step_s, at_s, length))
         words = "contact" if marks else _contact(recording, segment, criteria)
         marks.append(Mark(at_s, _value(recording, one.contact_s), words, "fourth"))
@@ -123,7 +123,7 @@ def _contact(recording: Recording, segment: Segment, criteria: Criteria) -> str:
     try:
         rate = _judged(criteria, segment, Clunk.name)
         rate = Clunk().compute(recording, segment) if rate is None else rate
-        text = f"contact, clunk {quantities.quantity(rate, 'N m/s', significant=3)}"
+        text = f"contact, clunk {labels.quantity(rate, 'N m/s', significant=3)}"
     except (NoValueError, HilError):
         return "contact"
     try:
@@ -131,7 +131,7 @@ def _contact(recording: Recording, segment: Segment, criteria: Criteria) -> str:
         energy = ContactEnergy().compute(recording, segment) if energy is None else energy
     except (NoValueError, HilError):
         return text
-    return f"{text}, {quantities.quantity(energy, 'J', significant=3)}"
+    return f"{text}, {labels.quantity(energy, 'J', significant=3)}"
 
 
 def _jerk(recording: Recording, segment: Segment, torque: Trace, criteria: Criteria) -> Mark | None:
@@ -143,7 +143,7 @@ def _jerk(recording: Recording, segment: Segment, torque: Trace, criteria: Crite
         return None
     judged = _judged(criteria, segment, Jerk.name)
     shown = abs(value) if judged is None else judged
-    words = f"largest jerk {quantities.quantity(shown, 'm/s³', significant=3)}"
+    words = f"largest jerk {labels.quantity(shown, 'm/s³', significant=3)}"
     return Mark(after_s, float(np.interp(after_s, torque.x, torque.y)), words, "third")
 
 

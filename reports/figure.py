@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from reports import quantities
+from reports import labels
 from reports.labels import Label
 
 Array = npt.NDArray[np.float64]
@@ -87,12 +87,12 @@ class Figure:
     @property
     def x_title(self) -> str:
         """Axis title with unit."""
-        return f"{self.x_text} ({quantities.unit(self.x_unit)})" if self.x_unit else self.x_text
+        return f"{self.x_text} ({labels.unit(self.x_unit)})" if self.x_unit else self.x_text
 
     @property
     def y_title(self) -> Label:
         """Axis title with unit."""
-        tail = f" ({quantities.unit(self.y_unit)})" if self.y_unit else ""
+        tail = f" ({labels.unit(self.y_unit)})" if self.y_unit else ""
         return Label(self.y_label.text, self.y_label.symbol, self.y_label.tail + tail)
 
     @property
@@ -121,14 +121,12 @@ class Figure:
         for trace in self.traces:
             shown = self._visible(trace)
             if shown.size:
-                low = quantities.quantity(float(shown.min()), self.y_unit)
-                high = quantities.quantity(float(shown.max()), self.y_unit)
+                low = labels.quantity(float(shown.min()), self.y_unit)
+                high = labels.quantity(float(shown.max()), self.y_unit)
                 parts.append(f"{trace.label.plain()}: from {low} to {high}.")
             else:
                 parts.append(f"{trace.label.plain()}: no values.")
-        parts += [
-            f"{level.label} at {quantities.quantity(level.value, self.y_unit)}." for level in self.levels
-        ]
+        parts += [f"{level.label} at {labels.quantity(level.value, self.y_unit)}." for level in self.levels]
         parts += [f"{mark.label}." for mark in self.marks]
         return " ".join(parts)
 

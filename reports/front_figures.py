@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.tuning import Tuning, front_of, metrics_of, point_of, within_hard_limits
-from reports import quantities
+from reports import labels
 from reports.figure import Figure, Mark, Range, Trace
 from reports.labels import Label
 
@@ -79,7 +79,7 @@ def _figure(
 
 
 def _value(value: float, unit: str) -> str:
-    return quantities.quantity(value, unit, significant=3)
+    return labels.quantity(value, unit, significant=3)
 
 
 def _range(values: Array) -> Range:

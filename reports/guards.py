@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hil.core.result import LimitResult, RunResult
-from reports import quantities
+from reports import labels
 from reports.provenance import Fact
 
 #: Responses that end or hold a run.
@@ -23,7 +23,7 @@ def hold_facts(result: RunResult | None) -> tuple[Fact, ...]:
         return ()
     holds = [
         Fact(
-            f"{quantities.quantity(hold.start_s, 's', 1)} to {quantities.quantity(hold.end_s, 's', 1)}",
+            f"{labels.quantity(hold.start_s, 's', 1)} to {labels.quantity(hold.end_s, 's', 1)}",
             f"held: {hold.cause}; ended by: {hold.ended_by}",
         )
         for hold in result.holds
@@ -38,21 +38,19 @@ def _reached(limit: LimitResult) -> str:
     if ends == (None, None):
         span = "nothing known"
     else:
-        low, high = (
-            quantities.DASH if end is None else quantities.number(end, significant=4) for end in ends
-        )
+        low, high = (labels.DASH if end is None else labels.number(end, significant=4) for end in ends)
         span = f"{low} to {high} {_unit(limit)}"
-    within = f"{quantities.number(limit.persistence_samples, 0)} samples" if limit.persistence_samples else ""
-    within = within or f"{quantities.nominal(1e3 * (limit.persistence_s or 0.0))} ms"
+    within = f"{labels.number(limit.persistence_samples, 0)} samples" if limit.persistence_samples else ""
+    within = within or f"{labels.nominal(1e3 * (limit.persistence_s or 0.0))} ms"
     taken = f"; reached {limit.reached} times" if limit.reached else ""
     return f"{what}{span}; {_allowed(limit)}, for {within}: {limit.response.replace('_', ' ')}{taken}"
 
 
 def _allowed(limit: LimitResult) -> str:
     if limit.below is not None and limit.above is not None and limit.below == -limit.above:
-        return f"limit {quantities.nominal(limit.above)} {_unit(limit)}"
-    ends = [f"at least {quantities.nominal(limit.below)}"] if limit.below is not None else []
-    ends += [f"at most {quantities.nominal(limit.above)}"] if limit.above is not None else []
+        return f"limit {labels.nominal(limit.above)} {_unit(limit)}"
+    ends = [f"at least {labels.nominal(limit.below)}"] if limit.below is not None else []
+    ends += [f"at most {labels.nominal(limit.above)}"] if limit.above is not None else []
     return f"{' and '.join(ends)} {_unit(limit)}"
 
 

@@ -15,7 +15,7 @@ from hil.analysis.identification import (
     Identification,
 )
 from hil.core.model import parameter_unit
-from reports import quantities
+from reports import labels
 from reports.figure import Figure
 from reports.labels import channel_label, parameter_title, with_titles
 from reports.origin import Origin
@@ -37,10 +37,10 @@ def identification_page(
     """The page; `summary` is the content of `identification.json`."""
     linear = found.verdict == "linear"
     models = _models(found)
-    delay = quantities.quantity(found.fit.modes.delay_s * 1e3, "ms")
-    error = f" ± {quantities.number(found.fit.delay_error_s * 1e3, significant=2)}" if linear else ""
+    delay = labels.quantity(found.fit.modes.delay_s * 1e3, "ms")
+    error = f" ± {labels.number(found.fit.delay_error_s * 1e3, significant=2)}" if linear else ""
     resonance = summary["resonance_hz"]
-    at = f", resonance at {quantities.quantity(resonance, 'Hz')}" if resonance else ""
+    at = f", resonance at {labels.quantity(resonance, 'Hz')}" if resonance else ""
     return Page(
         kind="Identification of a driveline",
         title=title,
@@ -77,9 +77,9 @@ _FUNCTIONS = "Coefficients of s, the highest power first; one denominator and on
 
 def _method(summary: Mapping[str, Any]) -> str:
     response = summary["frequency_response"]
-    low, high = (quantities.number(response[key], significant=3) for key in ("from_hz", "to_hz"))
+    low, high = (labels.number(response[key], significant=3) for key in ("from_hz", "to_hz"))
     holds = {round(e["input_hold_s"], 6) for e in summary["experiments"]}  # sample times differ by rounding
-    hold = " and ".join(quantities.quantity(h * 1e3, "ms", significant=3) for h in sorted(holds))
+    hold = " and ".join(labels.quantity(h * 1e3, "ms", significant=3) for h in sorted(holds))
     return (
         f"{response['points']} frequencies from {low} to {high} Hz by the {response['method']} method. "
         f"Dead time excludes the {hold} zero-order hold of the input."
@@ -155,8 +155,8 @@ def _of(output: str) -> str:
 def _judged(value: float, limit: float, *, percent: bool) -> tuple[str, str, str]:
     """Value, limit and verdict: a share that may not be exceeded, else a number that must be reached."""
     if percent:
-        return quantities.share(value, 2, digits=3), f"≤ {quantities.share(limit, 0)}", _word(value <= limit)
-    return quantities.number(value, 4), f"≥ {quantities.nominal(limit)}", _word(value >= limit)
+        return labels.share(value, 2, digits=3), f"≤ {labels.share(limit, 0)}", _word(value <= limit)
+    return labels.number(value, 4), f"≥ {labels.nominal(limit)}", _word(value >= limit)
 
 
 def _word(met: bool) -> str:
@@ -174,12 +174,10 @@ def _poles(summary: Mapping[str, Any]) -> Table:
         rows.append(
             (
                 "pair" if value.imag else "integrator" if not size else "real",
-                quantities.number(value.real),
-                f"±{quantities.THIN}{quantities.number(value.imag)}"
-                if value.imag
-                else quantities.number(0.0),
-                quantities.number(size / (2 * np.pi)) if size else quantities.DASH,
-                quantities.number(-value.real / size, 3) if size else quantities.DASH,
+                labels.number(value.real),
+                f"±{labels.THIN}{labels.number(value.imag)}" if value.imag else labels.number(0.0),
+                labels.number(size / (2 * np.pi)) if size else labels.DASH,
+                labels.number(-value.real / size, 3) if size else labels.DASH,
             )
         )
     head = ("pole", "real part, rad/s", "imaginary part, rad/s", "natural frequency, Hz", "damping ratio")
@@ -190,10 +188,10 @@ def _orders(summary: Mapping[str, Any]) -> Table:
     rows = tuple(
         (
             f"{c['order']}{'' if c['integrator'] else ', no pole at 0'}",
-            quantities.number(c["held_out"]),
-            quantities.quantity(100 * c["relative_excess"], "%", significant=3),
-            quantities.number(c["whiteness"], significant=2),
-            quantities.quantity(c["dead_time_s"] * 1e3, "ms"),
+            labels.number(c["held_out"]),
+            labels.quantity(100 * c["relative_excess"], "%", significant=3),
+            labels.number(c["whiteness"], significant=2),
+            labels.quantity(c["dead_time_s"] * 1e3, "ms"),
             "chosen" if c["chosen"] else "",
         )
         for c in summary["orders"]
@@ -209,9 +207,9 @@ def _functions(summary: Mapping[str, Any], *, linear: bool) -> Table:
         values = polynomial["values"]
         errors = polynomial["standard_errors"] if linear else [None] * len(values)
         for place, (value, error) in enumerate(zip(values, errors, strict=True)):
-            shown = quantities.number(error, significant=2) if error is not None else quantities.DASH
+            shown = labels.number(error, significant=2) if error is not None else labels.DASH
             power = f"s^{len(values) - 1 - place}"
-            rows.append((name if place == 0 else "", power, quantities.number(value), shown))
+            rows.append((name if place == 0 else "", power, labels.number(value), shown))
     return Table(("polynomial", "power", "coefficient", "standard error"), tuple(rows), 2)
 
 
@@ -224,7 +222,7 @@ def _chain(summary: Mapping[str, Any]) -> tuple[Table, ...]:
         (
             one["kind"].replace("_", " "),
             *(
-                f"{quantities.number(m['gain_db'], 2)} dB, {quantities.number(m['phase_deg'], 1)}°"
+                f"{labels.number(m['gain_db'], 2)} dB, {labels.number(m['phase_deg'], 1)}°"
                 for m in one["misfit"].values()
             ),
             "chosen" if one["chosen"] else "",
@@ -239,7 +237,7 @@ def _chain(summary: Mapping[str, Any]) -> tuple[Table, ...]:
             rows = tuple(
                 (
                     parameter_title(name),
-                    quantities.number(value),
+                    labels.number(value),
                     _error(errors.get(name)),
                     parameter_unit(name),
                 )
@@ -250,7 +248,7 @@ def _chain(summary: Mapping[str, Any]) -> tuple[Table, ...]:
 
 
 def _error(value: float | None) -> str:
-    return quantities.DASH if value is None else quantities.number(value, significant=2)
+    return labels.DASH if value is None else labels.number(value, significant=2)
 
 
 def _experiments(summary: Mapping[str, Any]) -> Table:
@@ -258,8 +256,8 @@ def _experiments(summary: Mapping[str, Any]) -> Table:
         (
             e["name"].rpartition("/")[2],
             e["kind"],
-            quantities.quantity(e["duration_s"], "s", 1),
-            quantities.quantity(e["input_hold_s"] * 1e3, "ms", significant=3),
+            labels.quantity(e["duration_s"], "s", 1),
+            labels.quantity(e["input_hold_s"] * 1e3, "ms", significant=3),
         )
         for e in summary["experiments"]
     )

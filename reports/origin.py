@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hil.core.files import sha256_of
 from hil.core.runtime.versions import versions
-from reports import quantities
+from reports import labels
 from reports.parts import Part, Table
 
 
@@ -45,7 +45,7 @@ class Origin:
     @property
     def part(self) -> Part:
         """The section that says it in full."""
-        files = tuple((s.name, s.role, quantities.file_size(s.size), s.sha256) for s in self.sources)
+        files = tuple((s.name, s.role, labels.file_size(s.size), s.sha256) for s in self.sources)
         software = tuple((name, version) for name, version in self.versions.items() if version)
         tables = (
             Table(("file", "used as", "size", "SHA-256"), files, 2, 3),

@@ -7,10 +7,10 @@ import numpy as np
 from hil.analysis.comparison import ComparedRun, difference
 from hil.core.channels import COMFORT_BAND_HZ
 from hil.core.result import Segment
-from reports import quantities, style
+from reports import labels, style
+from reports.channel_figures import DESCRIPTION, amplitude_spectrum, stretch_in_words
 from reports.figure import Band, Figure, Trace
 from reports.labels import Label, channel_label, channel_unit
-from reports.spectrum import DESCRIPTION, amplitude_spectrum, stretch_in_words
 from reports.step_figures import FIRST_SECONDS, SLOW_HZ, SPECTRUM_TO_HZ, SPECTRUM_WINDOW_S
 from reports.stretch import cut, line
 
@@ -67,7 +67,7 @@ def _response(
     if not traces:
         return None
     label = channel_label(channel)
-    tail = f", first {FIRST_SECONDS:g}{quantities.THIN}s" if np.isfinite(until_s) else ""
+    tail = f", first {FIRST_SECONDS:g}{labels.THIN}s" if np.isfinite(until_s) else ""
     return Figure(
         f"{segment}-{channel}-{suffix}",
         Label(label.text, label.symbol, tail),
@@ -130,7 +130,7 @@ def _spectrum(runs: tuple[ComparedRun, ...], segment: str, channel: str) -> Figu
         Label("Amplitude of", label.symbol),
         channel_unit(channel),
         tuple(traces),
-        bands=(Band(*band, f"{band[0]:g}{quantities.DASH}{band[1]:g}{quantities.THIN}Hz"),),
+        bands=(Band(*band, f"{band[0]:g}{labels.DASH}{band[1]:g}{labels.THIN}Hz"),),
         x_range=(0.0, SPECTRUM_TO_HZ),
         y_range=(0.0, 1.2 * scale) if scale > 0 else None,
         caption=f"{DESCRIPTION}, Hann window, {stretch_in_words(SPECTRUM_WINDOW_S, lengths)}.",

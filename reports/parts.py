@@ -14,7 +14,7 @@ from functools import cached_property
 from importlib import resources
 from typing import Any, Literal, Protocol
 
-from reports import shades, style
+from reports import style
 from reports.figure import Figure
 from reports.labels import Label
 from reports.pdf import _font_directory, _known_characters, _spelled_out
@@ -47,7 +47,7 @@ class Cell:
     @property
     def level(self) -> int:
         """Its shade in steps that can be distinguished."""
-        return shades.level(self.shade)
+        return style.level(self.shade)
 
 
 @dataclass(frozen=True)
@@ -158,8 +158,8 @@ def page_html(page: Page) -> str:
         parts=parts,
         light=style.css_variables("light"),
         dark=style.css_variables("dark"),
-        shades_light=shades.css_classes("light"),
-        shades_dark=shades.css_classes("dark"),
+        shades_light=style.css_classes("light"),
+        shades_dark=style.css_classes("dark"),
         css=_template("report.css"),
     )
 
@@ -235,6 +235,6 @@ def _map_as_data(m: Map) -> dict[str, Any]:
 
 
 def _cell_as_data(cell: Cell) -> dict[str, Any]:
-    background, ink = shades.colours(cell.level, "light", negative=cell.negative)
+    background, ink = style.colours(cell.level, "light", negative=cell.negative)
     shade = f"{'below' if cell.negative else 'shade'}-{cell.level}"
     return {"text": cell.text, "shade": shade, "background": background, "ink": ink}

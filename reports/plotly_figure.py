@@ -13,10 +13,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from reports import quantities, style
-from reports.covering import Outline, outlines, shown_x
-from reports.decimation import envelope
+from reports import labels, style
 from reports.figure import Band, Figure, Mark, Trace
+from reports.stretch import Outline, envelope, outlines, shown_x
 
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0e-\x1f\x7f]")
 #: Share of the axes' height over which the labels of bands alternate.
@@ -54,8 +53,8 @@ def _trace(trace: Trace, figure: Figure) -> dict[str, Any]:
     x, y = trace.x, trace.y
     if not trace.points:
         x, y = envelope(x, y, style.POINTS_ON_SCREEN, logarithmic=figure.logarithmic)
-    unit = html.escape(quantities.unit(figure.y_unit))
-    x_unit = html.escape(quantities.unit(figure.x_unit))
+    unit = html.escape(labels.unit(figure.y_unit))
+    x_unit = html.escape(labels.unit(figure.x_unit))
     return {
         "type": "scatter",
         "mode": "markers" if trace.points else "lines",
@@ -68,7 +67,7 @@ def _trace(trace: Trace, figure: Figure) -> dict[str, Any]:
             "width": style.LINE_WIDTH_PX * style.WIDER.get(trace.role, 1.0) * trace.width,
             "dash": trace.dash,
         },
-        "hovertemplate": f"%{{y:.4~g}}{quantities.THIN}{unit} at %{{x:.4~g}}{quantities.THIN}{x_unit}",
+        "hovertemplate": f"%{{y:.4~g}}{labels.THIN}{unit} at %{{x:.4~g}}{labels.THIN}{x_unit}",
     }
 
 
@@ -86,8 +85,8 @@ def _edges(trace: Trace, outline: Outline, figure: Figure) -> list[dict[str, Any
     """The envelope of a curve: its lower edge, and its upper one with the shade between them."""
     whole = _trace(trace, figure) | {"x": _packed(outline.x), "legendgroup": trace.label.as_html()}
     whole["line"] = {"width": 1.0}
-    unit = html.escape(quantities.unit(figure.y_unit))
-    words = f"%{{y:.4~g}}{quantities.THIN}{unit}"
+    unit = html.escape(labels.unit(figure.y_unit))
+    words = f"%{{y:.4~g}}{labels.THIN}{unit}"
     low = {"y": _packed(outline.low), "showlegend": False, "hovertemplate": f"lowest {words}"}
     high = {"y": _packed(outline.high), "fill": "tonexty", "hovertemplate": f"highest {words}"}
     return [whole | low, whole | high]

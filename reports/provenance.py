@@ -14,7 +14,7 @@ from hil.core.files import sha256_of
 from hil.core.files.toml_file import parse_toml
 from hil.core.recording import VEHICLE, Recording
 from hil.core.result import Lateness, PeriodicRequests, RunResult
-from reports import quantities
+from reports import labels
 
 _CONTROLLER = "controller/"
 _NOT_SHOWN = ("plant", "meta")
@@ -121,17 +121,17 @@ def run_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...
     ]
     if result is not None:
         facts += [
-            Fact("Time on the bench", quantities.quantity(result.bench_time_s, "s", 1)),
-            Fact("Real-time factor", quantities.number(result.real_time_factor, significant=3)),
+            Fact("Time on the bench", labels.quantity(result.bench_time_s, "s", 1)),
+            Fact("Real-time factor", labels.number(result.real_time_factor, significant=3)),
             Fact("Clocks", _clocks(result)),
             *timing_facts(result),
             *_bus_load_facts(result),
         ]
     elif TIME in recording and recording.samples > 1:
         span = recording.last_s - recording.first_s
-        facts.append(Fact("Length", quantities.quantity(span, "s")))
-        facts.append(Fact("Samples", quantities.number(float(recording.samples), 0)))
-        facts.append(Fact("Sample time", quantities.nominal(float(f"{recording.sample_time_s:.4g}"), "s")))
+        facts.append(Fact("Length", labels.quantity(span, "s")))
+        facts.append(Fact("Samples", labels.number(float(recording.samples), 0)))
+        facts.append(Fact("Sample time", labels.nominal(float(f"{recording.sample_time_s:.4g}"), "s")))
     return tuple(fact for fact in facts if fact.value)
 
 
@@ -147,9 +147,9 @@ def _clocks(result: RunResult) -> str:
     offset_s = max(abs(clock.offset_s) for clock in result.clocks)
     latest_s = max(clock.latest_s for clock in result.clocks)
     lost = sum(clock.lost + clock.left_out for clock in result.clocks)
-    drifts = f"clock drift {quantities.quantity(drift, 'ppm', 1)}"
-    skew = f"channel skew {quantities.quantity(offset_s * 1e3, 'ms', 2)}"
-    latency = f"maximum latency {quantities.quantity(latest_s * 1e3, 'ms', 1)}"
+    drifts = f"clock drift {labels.quantity(drift, 'ppm', 1)}"
+    skew = f"channel skew {labels.quantity(offset_s * 1e3, 'ms', 2)}"
+    latency = f"maximum latency {labels.quantity(latest_s * 1e3, 'ms', 1)}"
     return f"{drifts}, {skew}, {latency}, {lost} samples lost"
 
 
@@ -162,7 +162,7 @@ def timing_facts(result: RunResult) -> list[Fact]:
         return [Fact("Timing of requests", "simulated time, no jitter")]
     facts = [Fact(f"Timing, {r.device} {r.request}", _request(r)) for r in timing.requests]
     if timing.pauses:
-        longest = quantities.quantity(timing.longest_pause_s, "s", 3)
+        longest = labels.quantity(timing.longest_pause_s, "s", 3)
         facts.append(Fact("Service stalled", f"{timing.pauses} times, longest {longest}"))
     return facts
 
@@ -172,7 +172,7 @@ def _bus_load_facts(result: RunResult) -> list[Fact]:
         Fact(
             f"Load of bus '{load.bus}'",
             f"mean ≤ {100.0 * load.mean:.0f} %, peak (0.1 s) ≤ {100.0 * load.busiest:.0f} % of "
-            f"{quantities.quantity(load.bit_rate / 1e3, 'kbit/s', 0)}",
+            f"{labels.quantity(load.bit_rate / 1e3, 'kbit/s', 0)}",
         )
         for load in result.bus_loads
     ]
@@ -181,7 +181,7 @@ def _bus_load_facts(result: RunResult) -> list[Fact]:
 def _request(request: PeriodicRequests) -> str:
     """Late by how much when sent, and when seen on the bus."""
     parts = (
-        f"{request.count} every {quantities.quantity(request.period_s * 1e3, 'ms', 0)}",
+        f"{request.count} every {labels.quantity(request.period_s * 1e3, 'ms', 0)}",
         f"sent {_late(request.sent)}",
         f"on the bus {_late(request.seen) if request.seen else f'not known: {request.why_not_seen}'}",
         request.missed_in_words,
@@ -191,7 +191,7 @@ def _request(request: PeriodicRequests) -> str:
 
 def _late(late: Lateness) -> str:
     figures = ((late.p50_ms, "p50"), (late.p99_ms, "p99"), (late.max_ms, "largest"))
-    return " ".join(f"{name} {quantities.quantity(value, 'ms', 2)}" for value, name in figures) + " late"
+    return " ".join(f"{name} {labels.quantity(value, 'ms', 2)}" for value, name in figures) + " late"
 
 
 def simulated(recording: Recording) -> bool:
@@ -225,9 +225,9 @@ def stored_files(recording: Recording) -> tuple[StoredFile, ...]:
         then = stored.get(name, "")
         check = "matches" if then.lower() == now else "does not match" if then else "no stored hash"
         state = {"matches": "good", "does not match": "bad"}.get(check, "")
-        files.append(StoredFile(name, quantities.file_size(len(content)), now, check, state))
+        files.append(StoredFile(name, labels.file_size(len(content)), now, check, state))
     for name in stored.keys() - recording.attachments.keys():
-        files.append(StoredFile(name, quantities.DASH, stored[name], "has no file in the recording", "bad"))
+        files.append(StoredFile(name, labels.DASH, stored[name], "has no file in the recording", "bad"))
     return tuple(files)
 
 
@@ -251,7 +251,7 @@ def controller_table(recording: Recording) -> ControllerTable | None:
             continue
         columns[name.removeprefix(_CONTROLLER).removesuffix(".toml")] = dict(_flat(values))
     keys = dict.fromkeys(key for column in columns.values() for key in column)
-    rows = tuple((key, tuple(c.get(key, quantities.DASH) for c in columns.values())) for key in keys)
+    rows = tuple((key, tuple(c.get(key, labels.DASH) for c in columns.values())) for key in keys)
     return ControllerTable(tuple(columns), rows) if rows else None
 
 
@@ -263,7 +263,7 @@ def _flat(values: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]:
         if isinstance(value, dict):
             pairs += _flat(value, f"{prefix}{key}.")
         elif isinstance(value, float) and math.isfinite(value):
-            pairs.append((prefix + key, quantities.nominal(value)))
+            pairs.append((prefix + key, labels.nominal(value)))
         else:
             pairs.append((prefix + key, str(value)))
     return pairs

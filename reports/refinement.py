@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from hil.analysis.tuning import RefinedRun, Refinement
-from reports import quantities
+from reports import labels
 from reports.figure import Figure, Trace
 from reports.labels import Label, criterion_title
-from reports.outputs.refinement import REFINEMENT_HEAD, refinement_rows, refinement_verdict
+from reports.outputs.tuning import REFINEMENT_HEAD, refinement_rows, refinement_verdict
 from reports.parts import Page, Part, Table
 
 _TEXT = (
@@ -28,7 +28,7 @@ def refined_page(page: Page, found: Refinement, consented: str) -> Page:
         page,
         headline="Nothing was measured"
         if best is None
-        else f"Worst margin measured {quantities.share(best.worst)}",
+        else f"Worst margin measured {labels.share(best.worst)}",
         tone="fail" if best is None or best.worst < 0 else "pass",
         lead=f"{refinement_verdict(found)} On the model: {page.lead}",
         parts=(*refinement_parts(found, consented), *page.parts),
@@ -59,8 +59,8 @@ def _margins(found: Refinement, best: RefinedRun) -> Table:
     rows = [
         (
             criterion_title(name),
-            *(quantities.share(one[name]) for one in (first.predicted.margins, first.measured)),
-            *(quantities.share(one[name]) for one in (best.predicted.margins, best.measured)),
+            *(labels.share(one[name]) for one in (first.predicted.margins, first.measured)),
+            *(labels.share(one[name]) for one in (best.predicted.margins, best.measured)),
         )
         for name in best.measured
     ]

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.core.channels import CHANNELS, COMFORT_BAND_HZ, INPUT
-from reports import quantities
+from reports import labels
 from reports.figure import Band, Figure, Trace
 from reports.labels import Label, channel_label
 
@@ -87,7 +87,7 @@ def coherence_figure(frf: FrequencyResponse, least: float) -> Figure:
         Trace(channel_label(name), frf.frequency_hz, frf.coherence[row], role)
         for row, (name, role) in enumerate(zip(frf.outputs, _OUTPUT_ROLES, strict=False))
     )
-    caption = f"Median required for chirps and steps: {quantities.nominal(least)}."
+    caption = f"Median required for chirps and steps: {labels.nominal(least)}."
     figure = _figure(frf, "coherence", Label("Coherence"), "Coherence", "", traces)
     return replace(figure, y_range=(0.0, 1.05), caption=caption)
 
@@ -100,7 +100,7 @@ def _figure(
 ) -> Figure:
     first, last = float(frf.frequency_hz[0]), float(frf.frequency_hz[-1])
     low, high = max(COMFORT_BAND_HZ[0], first), min(COMFORT_BAND_HZ[1], last)
-    name = f"{COMFORT_BAND_HZ[0]:g}{quantities.DASH}{COMFORT_BAND_HZ[1]:g}{quantities.THIN}Hz"
+    name = f"{COMFORT_BAND_HZ[0]:g}{labels.DASH}{COMFORT_BAND_HZ[1]:g}{labels.THIN}Hz"
     return Figure(
         id=id_,
         title=title,

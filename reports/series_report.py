@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
-from reports import quantities
+from reports import labels
 from reports.parts import Page, Part, Table, page_html
 
 SERIES_HTML = "series.html"
@@ -66,7 +66,7 @@ def _criteria(spread: Sequence[Mapping[str, Any]]) -> Part:
             numbers = ("-" if figure is None else f"{figure:.4g}" for figure in figures)
             values = values_in_words(group["variables"])
             facts = (name, limit_in_words(one), one["verdict"].replace("_", " "), str(one["count"]))
-            rows.append((values, *facts, *numbers, quantities.unit(one["unit"])))
+            rows.append((values, *facts, *numbers, labels.unit(one["unit"])))
     table = Table(_HEAD, tuple(rows), numbers_from=4, words_from=9)
     return Part("criteria", "Criteria over the runs", "The verdict is the worst of the runs.", (table,))
 

@@ -12,11 +12,11 @@ import numpy as np
 from hil.core.channels import COMFORT_BAND_HZ
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, Segment
-from reports import quantities, style
+from reports import labels, style
+from reports.channel_figures import DESCRIPTION, amplitude_spectrum, stretch_in_words
 from reports.figure import Band, Figure, Level, Mark, Section, Trace, not_drawn
 from reports.labels import Label, channel_label, channel_unit
 from reports.members import Member, members
-from reports.spectrum import DESCRIPTION, amplitude_spectrum, stretch_in_words
 from reports.stretch import cut, line
 
 SPECTRUM_WINDOW_S = (4.0, 20.0)
@@ -43,7 +43,7 @@ class _Plan(NamedTuple):
 
 def step_section(recording: Recording, segments: list[Segment], criteria: Criteria) -> Section:
     """Figures of `segments`, all steps from one initial speed; `criteria` by id give peaks and limits."""
-    speed = quantities.nominal(segments[0].initial_speed_km_h, "km/h")
+    speed = labels.nominal(segments[0].initial_speed_km_h, "km/h")
     section_id = f"steps-{segments[0].initial_speed_km_h:g}kmh"
     overlay = Overlay(recording, members(segments), criteria, section_id)
     plans = [
@@ -80,7 +80,7 @@ def _missing(drawn: list[tuple[_Plan, Figure | None]]) -> list[Label]:
 def _text(segments: list[Segment]) -> str:
     steps = dict.fromkeys((s.reference_before, s.reference_after) for s in segments)
     sizes = ", ".join(
-        f"{quantities.nominal(before)} to {quantities.nominal(after, 'N m')}"
+        f"{labels.nominal(before)} to {labels.nominal(after, 'N m')}"
         for before, after in steps
         if before != after
     )
@@ -121,7 +121,7 @@ class Overlay:
         reference = self._reference(-0.1, FIRST_SECONDS)
         figure = replace(
             figure,
-            title=Label(label.text, label.symbol, f", first {FIRST_SECONDS:g}{quantities.THIN}s"),
+            title=Label(label.text, label.symbol, f", first {FIRST_SECONDS:g}{labels.THIN}s"),
             traces=(*figure.traces, *reference),
             levels=self._peak_limits(figure.traces),
             x_range=(-0.1, FIRST_SECONDS),
@@ -143,8 +143,8 @@ class Overlay:
             return None
         at = int(np.nanargmax(found[1]))
         after_s, value = float(found[0][at] - segment.step_s), float(found[1][at])
-        when = quantities.quantity(after_s, "s", 3)
-        label = f"{member.name}: peak {quantities.quantity(value, 'N m', significant=4)} at {when}"
+        when = labels.quantity(after_s, "s", 3)
+        label = f"{member.name}: peak {labels.quantity(value, 'N m', significant=4)} at {when}"
         return Mark(after_s, value, label, member.role)
 
     def driving_torque(self) -> Figure | None:
@@ -171,7 +171,7 @@ class Overlay:
             return None
         scale = max(float(t.y[t.x >= SLOW_HZ].max(initial=0.0)) for t in traces)
         lengths = [member.segment.end_s - member.segment.step_s for member in self._members]
-        band = f"{COMFORT_BAND_HZ[0]:g}{quantities.DASH}{COMFORT_BAND_HZ[1]:g}{quantities.THIN}Hz"
+        band = f"{COMFORT_BAND_HZ[0]:g}{labels.DASH}{COMFORT_BAND_HZ[1]:g}{labels.THIN}Hz"
         return Figure(
             id=f"{self._id}-{_short(channel).replace('_', '-')}-spectrum",
             title=Label(f"Spectrum of {label.text.lower()}", label.symbol),
@@ -184,7 +184,7 @@ class Overlay:
             x_range=(0.0, SPECTRUM_TO_HZ),
             y_range=(0.0, 1.2 * scale) if scale > 0 else None,
             caption=f"{DESCRIPTION}, Hann window, {stretch_in_words(SPECTRUM_WINDOW_S, lengths)}. "
-            f"The scale is set by {SLOW_HZ:g}{quantities.THIN}Hz and above.",
+            f"The scale is set by {SLOW_HZ:g}{labels.THIN}Hz and above.",
         )
 
     def _spectrum(self, member: Member, name: str) -> list[Trace]:
@@ -234,7 +234,7 @@ class Overlay:
         if criterion is None or criterion.value is None:
             return Label(member.name)
         return Label(
-            f"{member.name}, {word} {quantities.quantity(criterion.value, criterion.unit, significant=3)}"
+            f"{member.name}, {word} {labels.quantity(criterion.value, criterion.unit, significant=3)}"
         )
 
     def _reference(self, from_s: float, until_s: float) -> list[Trace]:
@@ -267,6 +267,6 @@ class Overlay:
             if criterion and criterion.upper is not None and 0 < criterion.upper <= 1.8 * highest:
                 near.setdefault(criterion.upper, []).append(member.name)
         return tuple(
-            Level(upper, f"Limit {quantities.nominal(upper, 'N m')}, {' and '.join(names)}")
+            Level(upper, f"Limit {labels.nominal(upper, 'N m')}, {' and '.join(names)}")
             for upper, names in near.items()
         )

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, RunResult
-from reports import quantities
+from reports import labels
 from reports.criteria import CriteriaTable, CriterionRow
 from reports.deciding_figure import deciding_figure
 from reports.figure import Figure
@@ -64,9 +64,9 @@ def _rank(criterion: CriterionResult) -> tuple[int, float]:
 
 def _row(row: CriterionRow) -> SummaryRow:
     segment = row.id.partition(".")[0] if "." in row.id else ""
-    unit = f"{quantities.THIN}{row.unit}" if row.unit else ""
-    value = row.value if row.value == quantities.DASH else row.value + unit
-    limit = row.limit if row.limit == quantities.DASH else row.limit + unit
+    unit = f"{labels.THIN}{row.unit}" if row.unit else ""
+    value = row.value if row.value == labels.DASH else row.value + unit
+    limit = row.limit if row.limit == labels.DASH else row.limit + unit
     return SummaryRow(row.id, row.title, segment, value, limit, row.margin, row.verdict, row.unmet)
 
 
@@ -97,7 +97,7 @@ def _figure(
             row = _row(rows[criterion.id])
             word = "Not met" if row.unmet else "Least margin"
             lines = [f"{row.value}", f"limit {row.limit}" + (f" ({criterion.below})" * bool(criterion.below))]
-            lines += [f"margin {row.margin}"] if row.margin != quantities.DASH else []
+            lines += [f"margin {row.margin}"] if row.margin != labels.DASH else []
             title = _with_symbol(f"{word}: {row.title}, {row.segment}")
             caption = f"{row.segment}: {', '.join(lines)}. {figure.caption}".strip()
             return replace(figure, title=title, caption=caption, wide=True)

@@ -1,21 +1,62 @@
-"""A figure on paper: SVG by Matplotlib, without its global state."""
+"""Matplotlib's canvas in the house style for paper, without its global state, and the SVG from it.
+
+A figure on paper: SVG by Matplotlib, without its global state.
+"""
 
 from __future__ import annotations
 
+import io
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from reports import style
-from reports.covering import Outline, outlines, shown_x
-from reports.decimation import envelope
 from reports.figure import Figure
 from reports.labels import Label
-from reports.svg_canvas import svg_canvas
+from reports.stretch import Outline, envelope, outlines, shown_x
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Canvas
     from matplotlib.lines import Line2D
+
+MM_PER_INCH = 25.4
+
+
+@dataclass
+class Picture:
+    """A canvas to draw on, and once that is done its SVG."""
+
+    canvas: Canvas
+    svg: bytes = b""
+
+
+@contextmanager
+def svg_canvas(width_mm: float, height_mm: float) -> Iterator[Picture]:
+    """A canvas of a size; what is drawn on it within the block is the picture's SVG after it."""
+    import matplotlib as mpl  # slow to import; only paper needs it
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+    from matplotlib.figure import Figure as Canvas
+
+    with mpl.rc_context(style.PAPER):
+        canvas = Canvas(figsize=(width_mm / MM_PER_INCH, height_mm / MM_PER_INCH))
+        FigureCanvasSVG(canvas)
+        picture = Picture(canvas)
+        yield picture
+        picture.svg = _svg(canvas)
+
+
+def _svg(canvas: Canvas) -> bytes:
+    out = io.BytesIO()
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph .* missing from font")  # drawn as a box
+        canvas.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
+    return out.getvalue()
+
 
 _LEFT_MM, _RIGHT_MM, _BOTTOM_MM, _TOP_MM = 14.5, 3.5, 8.5, 1.5
 _LEGEND_ROW_MM = 3.4

@@ -7,7 +7,7 @@ from dataclasses import replace
 from hil.analysis.target_search import Condition, Explanation, Rival
 from hil.core.effects import EFFECTS
 from hil.core.result import Segment
-from reports import quantities
+from reports import labels
 from reports.figure import Figure, Level
 from reports.labels import Label, channel_label, channel_unit, criterion_title, with_titles
 from reports.parts import Page, Part, Table, page_html, page_pdf
@@ -102,9 +102,9 @@ def _parts(found: Explanation) -> list[Part]:
 
 def _rivals(found: Explanation) -> Table:
     names = tuple(found.targets.values)
-    rows = [("target", *(quantities.number(v, significant=4) for v in found.targets.values.values()), "", "")]
+    rows = [("target", *(labels.number(v, significant=4) for v in found.targets.values.values()), "", "")]
     for name, rival in (("the model as it came", found.base), *((r.name, r) for r in found.rivals)):
-        figures = (quantities.number(rival.outcome.figures[n], significant=4) for n in names)
+        figures = (labels.number(rival.outcome.figures[n], significant=4) for n in names)
         missed = f"{len(rival.missed)} of {len(rival.conditions)}"
         rows.append((name, *figures, str(rival.numbers), missed))
     heads = map(criterion_title, names)
@@ -116,17 +116,17 @@ def _values(rival: Rival) -> str:
     lines = []
     for id_, values in rival.guess.effects.items():
         units = {p.name: p.unit for p in EFFECTS[id_].parameters}
-        numbers = ", ".join(f"{n} {quantities.quantity(v, units[n])}" for n, v in values.items())
+        numbers = ", ".join(f"{n} {labels.quantity(v, units[n])}" for n, v in values.items())
         lines.append(f"{EFFECTS[id_].title}: {numbers}.")
     if rival.guess.held:
-        numbers = ", ".join(f"{n} {quantities.number(v)}" for n, v in rival.guess.held.items())
+        numbers = ", ".join(f"{n} {labels.number(v)}" for n, v in rival.guess.held.items())
         lines.append(f"The RMCU keeps {numbers}, whatever is written to it.")
     return " ".join(lines)
 
 
 def _conditions(conditions: tuple[Condition, ...]) -> Table:
     rows = [
-        (c.name, quantities.number(c.found), c.limit, c.unit, "holds" if c.holds else "missed")
+        (c.name, labels.number(c.found), c.limit, c.unit, "holds" if c.holds else "missed")
         for c in conditions
     ]
     return Table(("condition", "found", "wanted", "unit", ""), tuple(rows), 1, 2)
@@ -166,13 +166,13 @@ def _figure(found: Explanation, segment: str, wanted: float) -> Figure | None:
     lowest = min(float(trace.y.min()) for trace in traces)
     return Figure(
         segment,
-        Label(segment, "", f": {label.text.lower()}, target {quantities.nominal(wanted, 'N m')}"),
+        Label(segment, "", f": {label.text.lower()}, target {labels.nominal(wanted, 'N m')}"),
         "Time from the step",
         "s",
         label,
         channel_unit(_SHAFT_TORQUE),
         tuple(traces),
-        levels=(Level(wanted, f"Target {quantities.nominal(wanted, 'N m')}, {segment}"),),
+        levels=(Level(wanted, f"Target {labels.nominal(wanted, 'N m')}, {segment}"),),
         x_range=(-0.1, FIRST_SECONDS),
         y_range=(min(0.0, 1.05 * lowest), 1.1 * max(highest, wanted)),
     )

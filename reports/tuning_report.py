@@ -11,7 +11,7 @@ from hil.analysis.comparison import ComparedRun
 from hil.analysis.tuning import PARAMETERS, Confirmation, Standing, Tuning, values_of, within_hard_limits
 from hil.core.recording import Recording
 from hil.core.result import RunResult, Segment
-from reports import quantities
+from reports import labels
 from reports.figure import Level
 from reports.front_figures import front_figures
 from reports.labels import Label, criterion_title
@@ -56,7 +56,7 @@ def tuning_page(
     return Page(
         kind="Tuning",
         title=title,
-        headline=f"Worst margin {quantities.share(worst.worst)}",
+        headline=f"Worst margin {labels.share(worst.worst)}",
         tone="pass" if worst.worst >= 0 else "fail",
         lead=_in_titles(verdict(found), found),
         notes=tuple(notes),
@@ -77,10 +77,8 @@ def _first(found: Tuning, runs: Sequence[Shown]) -> Part:
         (
             criterion_title(criterion.id),
             _limit(criterion),
-            quantities.share(found.start.least_margin(criterion.id))
-            if found.start.worst.feasible
-            else "none",
-            quantities.share(found.chosen.least_margin(criterion.id)),
+            labels.share(found.start.least_margin(criterion.id)) if found.start.worst.feasible else "none",
+            labels.share(found.chosen.least_margin(criterion.id)),
         )
         for criterion in ranked[:_ROWS]
     )
@@ -108,10 +106,10 @@ def _in_titles(text: str, found: Tuning) -> str:
 def _limit(criterion: Criterion) -> str:
     if criterion.below:
         return f"< {criterion.below}"
-    unit = quantities.unit(criterion.metric.unit)
-    bounds = [f"≥ {quantities.nominal(criterion.lower)}"] if criterion.lower is not None else []
-    bounds += [f"≤ {quantities.nominal(criterion.upper)}"] if criterion.upper is not None else []
-    return " ".join([*bounds, unit]) if bounds else quantities.DASH
+    unit = labels.unit(criterion.metric.unit)
+    bounds = [f"≥ {labels.nominal(criterion.lower)}"] if criterion.lower is not None else []
+    bounds += [f"≤ {labels.nominal(criterion.upper)}"] if criterion.upper is not None else []
+    return " ".join([*bounds, unit]) if bounds else labels.DASH
 
 
 def _parts(found: Tuning, runs: Sequence[Shown], origin: Origin) -> list[Part]:
@@ -162,17 +160,17 @@ def _confirmed(found: Confirmation | None) -> tuple[Part, ...]:
     rows = tuple(
         (
             criterion_title(one.id),
-            quantities.number(one.predicted.value),
-            quantities.number(one.measured.value),
-            quantities.number(one.difference, significant=3),
-            quantities.unit(one.unit),
-            quantities.share(one.apart, 2) if one.of_limit else quantities.DASH,
+            labels.number(one.predicted.value),
+            labels.number(one.measured.value),
+            labels.number(one.difference, significant=3),
+            labels.unit(one.unit),
+            labels.share(one.apart, 2) if one.of_limit else labels.DASH,
             one.measured.verdict,
         )
         for one in found.criteria
     )
     words = "as predicted" if found.agrees else "not as predicted: see the diagnosis"
-    allowed = quantities.share(found.allowed)
+    allowed = labels.share(found.allowed)
     text = (
         f"The plan run with the tuned controller, over the wire. Allowed: {allowed} of a limit, of the "
         f"larger value where there is none; {words}."
@@ -213,15 +211,15 @@ def _margins(found: Tuning) -> Table:
 def _worst(one: Standing, found: Tuning) -> str:
     if not all(within_hard_limits(tried) for tried in one.tried):
         return "none"
-    return quantities.share(min(one.least_margin(criterion.id) for criterion in found.trial.driven.criteria))
+    return labels.share(min(one.least_margin(criterion.id) for criterion in found.trial.driven.criteria))
 
 
 def _margin(one: Standing, id_: str) -> str:
-    least = quantities.share(one.least_margin(id_)) if all(t.margins for t in one.tried) else quantities.DASH
+    least = labels.share(one.least_margin(id_)) if all(t.margins for t in one.tried) else labels.DASH
     if len(one.tried) == 1:
         return least
     own = one.nominal.margins.get(id_)
-    return f"{least} ({quantities.share(own)})"
+    return f"{least} ({labels.share(own)})"
 
 
 def _kept_text(found: Tuning) -> str:
@@ -239,10 +237,10 @@ def _kept(found: Tuning) -> Table:
             -1.0 - one.share,
             (
                 one.words,
-                quantities.number(one.start),
-                quantities.number(one.value),
-                quantities.unit(one.unit),
-                quantities.share(one.share),
+                labels.number(one.start),
+                labels.number(one.value),
+                labels.unit(one.unit),
+                labels.share(one.share),
             ),
         )
         for one in found.worse
@@ -256,10 +254,10 @@ def _kept(found: Tuning) -> Table:
                 -(worst.share if worst else 0.0),
                 (
                     kept.words,
-                    quantities.number(start),
-                    quantities.number(value),
-                    quantities.unit(kept.unit),
-                    quantities.share(worst.share) if worst else "not worse",
+                    labels.number(start),
+                    labels.number(value),
+                    labels.unit(kept.unit),
+                    labels.share(worst.share) if worst else "not worse",
                 ),
             )
         )
@@ -279,10 +277,10 @@ def _limits(found: Tuning) -> Table:
     rows = []
     for name in (one for one in found.chosen.nominal.limits if not one.startswith("keep.")):
         cells = (
-            quantities.share(min(t.limits.get(name, float("nan")) for t in one.tried)) for one in found.shown
+            labels.share(min(t.limits.get(name, float("nan")) for t in one.tried)) for one in found.shown
         )
         limit = getattr(found.trial.free.limits, name)
-        value = "yes" if isinstance(limit, bool) else quantities.nominal(limit)
+        value = "yes" if isinstance(limit, bool) else labels.nominal(limit)
         rows.append((_LIMITS.get(name, name.replace("_", " ")), value, *cells))
     return Table(("limit", "value", *names), tuple(rows))
 
@@ -292,10 +290,10 @@ def _parameters(found: Tuning) -> Table:
     rows = [
         (
             PARAMETERS[name].words,
-            quantities.number(value),
-            quantities.number(own[name]),
-            *(quantities.nominal(bound) for bound in found.trial.free.free[name]),
-            quantities.unit(PARAMETERS[name].unit),
+            labels.number(value),
+            labels.number(own[name]),
+            *(labels.nominal(bound) for bound in found.trial.free.free[name]),
+            labels.unit(PARAMETERS[name].unit),
         )
         for name, value in found.chosen.values.items()
     ]
@@ -317,9 +315,9 @@ def _binding(found: Tuning) -> Table:
     rows = []
     for tried in sorted(found.chosen.tried, key=lambda one: one.worst)[:5]:
         differs = found.trial.draws[tried.draw].differs
-        words = ", ".join(f"{name} {quantities.number(value)}" for name, value in differs.items())
+        words = ", ".join(f"{name} {labels.number(value)}" for name, value in differs.items())
         car = "nominal model" if tried.draw == 0 else f"draw\u00a0{tried.draw}"
-        rows.append((car, quantities.share(tried.worst), criterion_title(tried.binding), words))
+        rows.append((car, labels.share(tried.worst), criterion_title(tried.binding), words))
     return Table(
         ("vehicle", "worst margin", "binding criterion", "deviation from nominal"), tuple(rows), 1, 2
     )
@@ -334,7 +332,7 @@ def _sensitivities(found: Tuning) -> Map:
             criterion_title(criterion),
             tuple(
                 Cell(
-                    quantities.number(10 * value, 1),
+                    labels.number(10 * value, 1),
                     min(1.0, abs(value) / largest) if np.isfinite(value) else 0.0,
                     value < 0,
                 )

@@ -1,4 +1,7 @@
-"""From a recording to the criteria's results."""
+"""From a recording to the criteria's results.
+
+A recorded run judged once more, by the plan that lies in its recording.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +10,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from hil.core.errors import HilError
-from hil.core.recording import Recording
-from hil.core.result import CriterionResult, CriterionVerdict, Segment
+from hil.core.recording import Recording, run_of
+from hil.core.result import CriterionResult, CriterionVerdict, RunResult, Segment, verdict_of
 from test_plans.criteria import Criterion
 from test_plans.evidence import objections, unproven
+from test_plans.loading import plan_from_text
 from test_plans.metrics import (
     DidNotSettleError,
     Metric,
@@ -233,3 +237,24 @@ def _verdict(criterion: Criterion, own: _Found, rival: _Found | None, scatter: f
     if criterion.upper is not None and own.value > criterion.upper:
         return "fail"
     return "pass" if has_limit else "informational"
+
+
+def rejudged(recording: Recording) -> RunResult | None:
+    """The run's result with its criteria computed again; None for a recording without a run."""
+    stored = run_of(recording)
+    if stored is None:
+        return None
+    where = str(recording.source)
+    text = recording.attachments.get("plan.yaml", b"").decode(errors="replace")
+    plan = plan_from_text(text, f"{where}: plan.yaml", recording.source.parent, files_required=False)
+    criteria = judge(plan, recording, stored.segments)
+    reason = stored.reason
+    if recording.damage:  # what is lost or changed somewhere proves nothing anywhere
+        reason = "\n".join(
+            [*([reason] if reason else []), f"the recording is damaged: {recording.damage[0]}"]
+        )
+    tripped = "" if recording.damage else stored.limit_tripped
+    unchecked = not_checked(plan, recording, stored.segments)
+    verdict = verdict_of(criteria, stopped=reason != "", limit_tripped=tripped)
+    changes = {"criteria": criteria, "verdict": verdict, "reason": reason, "not_checked": unchecked}
+    return stored.model_copy(update=changes)

@@ -1,4 +1,7 @@
-"""From YAML to a plan, with messages that name file, line and key."""
+"""Built-in files by their names, beside files by their paths.
+
+From YAML to a plan, with messages that name file, line and key.
+"""
 
 from __future__ import annotations
 
@@ -9,19 +12,44 @@ from typing import Any
 
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import closest, did_you_mean
+from hil.core.files import is_file
 from hil.core.files.toml_file import parse_toml, refuse_other_kind
-from test_plans.building import build, list_at, mapping_at
-from test_plans.choices import Choices
+from test_plans.building import PlanMistakes, brief, build, list_at, mapping_at
 from test_plans.conductor import PlannedSegment
 from test_plans.criteria import EXAMPLE as CRITERION_EXAMPLE
 from test_plans.criteria import Criterion, criterion_at
-from test_plans.mistakes import PlanMistakes
-from test_plans.named_files import named_file, names_in
 from test_plans.plan import Plan, PlanKeys, estimate_duration_s
 from test_plans.steps import LARGEST_COUNT, STEPS, FileSearch, Step
 from test_plans.variables import KEY as VARIABLES
-from test_plans.variables import variables_at, with_values
+from test_plans.variables import Choices, variables_at, with_values
 from test_plans.yaml_document import Document, KeyPath, read_yaml, yaml_text
+
+
+def names_in(folder: Path) -> tuple[str, ...]:
+    """Names of the built-in YAML files in `folder`, in order."""
+    return tuple(sorted(path.stem for path in folder.glob("*.yaml")))
+
+
+def named_file(name_or_path: str | Path, folder: Path, kind: str, built_in: str = "one") -> Path:
+    """A path as it is, or the built-in file of `folder` that has this name.
+
+    Args:
+        kind: what it is, for messages; `built_in`: the same of one that comes with the package.
+
+    Raises:
+        BadInputError: it is no path, and there is no such name.
+    """
+    path = Path(name_or_path)
+    if path.suffix in (".yaml", ".yml") or len(path.parts) > 1 or is_file(path):
+        return path
+    names = names_in(folder)
+    if path.name in names:
+        return folder / f"{path.name}.yaml"
+    raise BadInputError(
+        f"there is no {kind} {brief(path.name)}, neither a file nor a built-in {built_in}",
+        fix=f"{did_you_mean(path.name, names)}; a file's name ends in .yaml",
+    )
+
 
 logger = logging.getLogger(__name__)
 

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from hil.core.files import is_file
 from test_plans.building import Strict, build, mapping_at
-from test_plans.named_files import named_file, names_in
+from test_plans.loading import named_file, names_in
 from test_plans.yaml_document import read_yaml, yaml_text
 
 SEQUENCES = Path(__file__).parent / "sequences"

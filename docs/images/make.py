@@ -8,7 +8,7 @@ from pathlib import Path
 
 from hil.core.recording import read_recording
 from reports import write_figures
-from reports.gap_bars import GapBars, GapRow
+from reports.diagnosis_figures import GapBars, GapRow
 from reports.labels import Label, channel_label
 from test_plans import rejudged
 

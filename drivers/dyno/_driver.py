@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from drivers.device import Examined
 from drivers.dyno._canopen import LoopNetwork
 from drivers.dyno._examination import OTHER_PDOS, examine, identify
 from drivers.dyno._node import (
@@ -21,7 +22,6 @@ from drivers.dyno._node import (
     SWITCHED_ON,
     DynoNode,
 )
-from drivers.examination import Examined
 from drivers.frame_source import CountedBy, FrameSource
 from drivers.loop import BusLoop
 from drivers.table import VehicleParameters

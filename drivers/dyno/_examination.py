@@ -5,8 +5,8 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Collection, Sequence
 
+from drivers.device import Examined, Finding
 from drivers.dyno._node import ENABLED, FAULT, STATE_MASK, DynoNode
-from drivers.examination import Examined, Finding
 from drivers.loop import BusLoop
 from drivers.wire import Wire
 from hil.core.can.frames import SENT_BY_HOST, FrameBlock, standard

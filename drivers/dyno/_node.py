@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers.dyno._canopen import SDO_TIMEOUT_S, BrokenOffError, LoopNetwork, LoopNode, abort_in_words
+from drivers.echoes import NewestFrames
 from drivers.frame_source import Binding
-from drivers.newest_frames import NewestFrames
 from hil.core.can.eds import identifier_of, layout_of_pdo, mapping_of, read_eds
 from hil.core.can.signals import FrameLayout, in_units
 from hil.core.errors import DeviceError

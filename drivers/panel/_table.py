@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from drivers.panel._panel import Panel
-from drivers.panel._returning_line import ReturningLine
+from drivers.panel._panel import Panel, ReturningLine
 from drivers.table import Connections, DeviceTable
 
 

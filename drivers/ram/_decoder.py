@@ -1,19 +1,128 @@
-"""From packets of measured data to samples: whole ones only, with the counts that their time stamps give."""
+"""How symbols are laid into ODTs: the packets in which a slave sends what it measured at one moment.
+
+Samples that came and wait to be handed out, and how many of them never came.
+
+From packets of measured data to samples: whole ones only, with the counts that their time stamps give.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from drivers.ram._packing import Odt
-from drivers.samples import Array, Numbers
-from hil.core.can.frames import FrameBlock, empty_block, joined
+from drivers.samples import Array, Numbers, Samples, Stream
+from hil.core.can.frames import FrameBlock, empty_block, joined, most_frame_bits
 from hil.core.can.symbols import Symbol
-from hil.core.can.xcp import MOST_BYTES, TimeStamps
+from hil.core.can.xcp import LARGEST_ODT_NUMBER, MOST_BYTES, TimeStamps
+from hil.core.errors import BenchError
 
 _NUMBER_BYTES = 1
+
+
+@dataclass(frozen=True)
+class Entry:
+    """Bytes of memory that stand together in an ODT."""
+
+    address: int
+    extension: int
+    size: int
+
+
+Odt = tuple[Entry, ...]
+
+
+def packed(
+    symbols: Sequence[Symbol], stamp_bytes: int, packet_bytes: int, granularity: int, most_in_entry: int
+) -> list[Odt]:
+    """The symbols byte behind byte, in as few packets as hold them; one may end in the next packet.
+
+    Args:
+        stamp_bytes: of the time stamp, which stands in the first packet.
+        packet_bytes: of a packet, the ODT's number included.
+        granularity: bytes of which the size of an entry is a multiple.
+        most_in_entry: bytes of the largest entry.
+
+    Raises:
+        BenchError: a symbol whose size is no multiple, or more packets than there are numbers.
+    """
+    odts: list[list[Entry]] = [[]]
+    room = packet_bytes - _NUMBER_BYTES - stamp_bytes
+    for symbol in symbols:
+        if symbol.size % granularity:
+            raise BenchError(
+                f"symbol '{symbol.name}' has {symbol.size} bytes; only multiples of {granularity} go"
+            )
+        address, left = symbol.address, symbol.size
+        while left:
+            size = min(left, room, most_in_entry) // granularity * granularity
+            if not size:
+                if not odts[-1] and len(odts) > 1:
+                    raise BenchError(f"packets of {packet_bytes} bytes have no room for {granularity} bytes")
+                odts.append([])
+                room = packet_bytes - _NUMBER_BYTES
+                continue
+            odts[-1].append(Entry(address, symbol.extension, size))
+            address, left, room = address + size, left - size, room - size
+    if len(odts) > LARGEST_ODT_NUMBER:
+        raise BenchError(f"{len(odts)} packets are needed for each sample; omit symbols")
+    return [tuple(odt) for odt in odts]
+
+
+def bits_of(odts: Sequence[Odt], stamp_bytes: int) -> int:
+    """Bits that the packets of one moment take on a CAN bus, with as many stuff bits as there may be."""
+    sizes = [_NUMBER_BYTES + sum(entry.size for entry in odt) for odt in odts]
+    sizes[0] += stamp_bytes
+    return sum(int(most_frame_bits(size, False)) for size in sizes)
+
+
+_LOOK_S, _LEAST_SAMPLES = 0.5, 20
+
+
+class Measured:
+    """A `SampleSource`; `lost`: the share of samples that never came, over the last half second or so."""
+
+    def __init__(self, stream: Stream) -> None:
+        self.streams = (stream,)
+        self._look_s = max(_LOOK_S, _LEAST_SAMPLES * stream.period_s)
+        self._waiting: list[Samples] = []
+        self.begin(0.0)
+
+    @property
+    def came(self) -> bool:
+        """Whether anything came since `begin`."""
+        return self._newest is not None
+
+    def begin(self, now_s: float) -> None:
+        """Forget what came until now, and count from here."""
+        self._waiting.clear()
+        self.lost = 0.0
+        self._since_s, self._came = now_s, 0
+        self._first: int | None = None
+        self._newest: int | None = None
+
+    def take(self, samples: Samples, now_s: float) -> None:
+        """Samples with counts have come."""
+        if samples.counts is None or not len(samples.counts):
+            return
+        self._waiting.append(samples)
+        if self._first is None:
+            self._first = int(samples.counts[0]) - 1
+        self._newest = max(self._newest or self._first, int(samples.counts.max()))
+        self._came += len(samples.counts)
+        if now_s - self._since_s >= self._look_s:
+            wanted = self._newest - self._first
+            self.lost = max(0.0, 1.0 - self._came / wanted) if wanted > 0 else 0.0
+            self._since_s, self._first, self._came = now_s, self._newest, 0
+
+    def samples(self) -> list[Samples]:
+        """What has come since the last call."""
+        waiting, self._waiting = self._waiting, []
+        return waiting
+
+
 _STANDS_STILL = 50  # samples
 
 

@@ -6,12 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from drivers.examination import Examined, Finding
+from drivers.device import Examined, Finding
 from drivers.loop import BusLoop
-from drivers.ram._decoder import DaqDecoder
+from drivers.ram._decoder import DaqDecoder, Measured, packed
 from drivers.ram._master import Master
-from drivers.ram._measured import Measured
-from drivers.ram._packing import packed
 from drivers.ram._setup import Setup
 from drivers.samples import Counting, Samples, Stream
 from drivers.wire import Wire

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from drivers.ram._decoder import DaqDecoder
+from drivers.ram._decoder import DaqDecoder, Odt, packed
 from drivers.ram._master import Master
-from drivers.ram._packing import Odt, packed
 from hil.core.can.symbols import Symbol, Symbols
 from hil.core.can.xcp import (
     DYNAMIC,

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 
 from pydantic import Field
 
+from drivers.ram._decoder import bits_of, packed
 from drivers.ram._monitor import RamMonitor
-from drivers.ram._packing import bits_of, packed
 from drivers.table import Connections, DeviceTable, File
 from hil.core.can.symbol_files import read_symbols
 from hil.core.can.symbols import Symbol, Symbols, refuse_extended

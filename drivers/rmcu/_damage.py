@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from drivers.newest_frames import least_bytes
+from drivers.echoes import least_bytes
 from hil.core.can.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock, crc8_many
 from hil.core.can.signals import FrameLayout
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from drivers.examination import Examined, Finding
+from drivers.device import Examined, Finding
+from drivers.echoes import NewestFrames
 from drivers.frame_source import Binding, CountedBy, FrameSource
 from drivers.loop import BusLoop
-from drivers.newest_frames import NewestFrames
 from drivers.rmcu._damage import FrameDamage, has_checksum
 from drivers.rmcu._parameters import parameters_of
 from drivers.wire import Wire

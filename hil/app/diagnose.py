@@ -9,9 +9,8 @@ from typing import Any
 from hil.analysis.diagnosis import INTERRUPTED, LEAST_SAMPLES, Diagnosis, diagnose
 from hil.app.feedback import LOGGED, Feedback, Show, warn_of_damage
 from hil.app.interrupts import INTERRUPTS
-from hil.app.reading import reading_of
 from hil.app.requests import DiagnoseRequest
-from hil.app.result_file import Outcome, json_file
+from hil.app.result_file import Outcome, json_file, reading_of
 from hil.app.results_folder import results_in
 from hil.core.errors import BadInputError
 from hil.core.model import Model, load_model, model_to_toml

@@ -8,9 +8,8 @@ from hil.analysis.frequency_response import Experiment, Method, experiments_of
 from hil.analysis.identification import Identification, identify
 from hil.analysis.plausible import refuse_same_data
 from hil.app.feedback import LOGGED, Feedback, Show, warn_of_damage
-from hil.app.reading import reading_of
 from hil.app.requests import IdentifyRequest
-from hil.app.result_file import Outcome, json_file
+from hil.app.result_file import Outcome, json_file, reading_of
 from hil.app.results_folder import refuse_missing, results_in
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording, column_map, read_recording

@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from hil.app.feedback import LOGGED, Feedback, warn_of_damage
-from hil.app.reading import reading_of
 from hil.app.requests import ReportRequest
-from hil.app.result_file import RESULT, write_result
+from hil.app.result_file import RESULT, reading_of, write_result
 from hil.app.results_folder import refuse_missing, results_in
 from hil.core.errors import BadInputError
 from hil.core.files import read_text

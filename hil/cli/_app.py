@@ -13,8 +13,7 @@ from typing import Annotated, Any, get_type_hints
 
 import typer
 
-from hil.app.failures import error_of
-from hil.app.interrupts import EXIT_CODE, INTERRUPTS
+from hil.app.interrupts import EXIT_CODE, INTERRUPTS, error_of
 from hil.app.log import LOG
 from hil.cli._commands import (
     GROUPS,

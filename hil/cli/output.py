@@ -15,8 +15,7 @@ from rich.table import Table
 from hil.app.feedback import LOGGED, Show
 from hil.app.log import LOG
 from hil.app.result_file import to_json
-from hil.cli.streams import complain
-from hil.cli.terminal import KEYS, operators_terminal
+from hil.cli.streams import KEYS, complain, operators_terminal
 from hil.core.errors.wording import printable, share
 from hil.core.result import AcceptedExpiry, CriterionResult, CriterionVerdict, Identity
 

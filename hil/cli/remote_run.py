@@ -17,8 +17,7 @@ from hil.app.result_file import RESULT
 from hil.app.results_folder import ResultsFolder, results_in
 from hil.app.run import NAMES
 from hil.cli.output import progress
-from hil.cli.streams import complain
-from hil.cli.terminal import KEYS, StandardTerminal, operators_terminal
+from hil.cli.streams import KEYS, StandardTerminal, complain, operators_terminal
 from hil.client import Client, RefusedError
 from hil.client.retry import OURS, Retry
 from hil.client.sent_plan import give_plan

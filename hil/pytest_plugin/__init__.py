@@ -10,11 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from hil.pytest_plugin._benches import bench_for, refuse_unnamed_hardware
-from hil.pytest_plugin._folders import Folders, folder_name
 from hil.pytest_plugin._plans import PlanFile
 from hil.pytest_plugin._ran import Ran, properties
-from hil.pytest_plugin._runs import run_plan
+from hil.pytest_plugin._runs import Folders, bench_for, folder_name, refuse_unnamed_hardware, run_plan
 
 __all__ = ["PlanFile", "PytestBench", "Ran", "bench"]
 

@@ -8,10 +8,16 @@ from typing import Any
 
 import pytest
 
-from hil.pytest_plugin._benches import bench_for, refuse_unnamed_hardware
-from hil.pytest_plugin._folders import Folders, folder_name
 from hil.pytest_plugin._ran import Ran, in_words, is_bad, properties, troubles
-from hil.pytest_plugin._runs import CutOffError, run_once, run_plan
+from hil.pytest_plugin._runs import (
+    CutOffError,
+    Folders,
+    bench_for,
+    folder_name,
+    refuse_unnamed_hardware,
+    run_once,
+    run_plan,
+)
 
 
 class PlanFile(pytest.File):

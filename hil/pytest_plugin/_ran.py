@@ -68,11 +68,11 @@ def is_bad(criterion: CriterionResult) -> bool:
 
 def in_words(criterion: CriterionResult) -> str:
     """A criterion with its value and limits, on a line."""
-    from reports import quantities
+    from reports import labels
     from reports.criteria import in_words as criterion_in_words
 
     if criterion.verdict == "informational":
-        return f"{criterion.id}: informational: {quantities.quantity(criterion.value, criterion.unit)}"
+        return f"{criterion.id}: informational: {labels.quantity(criterion.value, criterion.unit)}"
     return f"{criterion.id}: {criterion.verdict.replace('_', ' ')}: {criterion_in_words(criterion)}"
 
 

@@ -1,4 +1,12 @@
-"""Runs of plans by the command: each plan once in a session, and none before the bench is safe again.
+"""Runs of plans from pytest: the bench, a folder for each run, each plan once in a session.
+
+Which bench a plan or a test is meant for.
+
+Where the runs of pytest go: a numbered folder for each; a second session finds room beside the first.
+
+It imports next to nothing, as the plugin that uses it does.
+
+Runs of plans by the command: each plan once in a session, and none before the bench is safe again.
 
 A run is a process of its own. Whatever ends a test while it lasts (a timeout, Ctrl-C) interrupts it, and
 waits until it has left the bench safe. The locks are held by the run itself: they outlive a worker of xdist
@@ -17,8 +25,68 @@ from typing import Any
 
 import pytest
 
-from hil.pytest_plugin._folders import leave_if_empty
 from hil.pytest_plugin._ran import Ran
+
+_BENCH = "bench.toml"
+
+
+def bench_for(config: pytest.Config, folder: Path) -> str | None:
+    """A bench file's path, or the name of a shipped one."""
+    given = config.getoption("--bench")
+    if given:
+        return _placed(given, config.invocation_params.dir)
+    ini = config.getini("hil_bench")
+    if ini:
+        return _placed(ini, config.inipath.parent if config.inipath else config.rootpath)
+    own = (place / _BENCH for place in (folder, config.invocation_params.dir))
+    return next((str(file) for file in own if file.is_file()), None)
+
+
+def refuse_unnamed_hardware(config: pytest.Config, found: str) -> None:
+    """Raises:
+    BadInputError: a bench.toml that no option names describes hardware.
+    """
+    if not config.getoption("--bench") and not config.getini("hil_bench"):
+        from hil.engine.bench.bench_file import refuse_hardware
+
+        refuse_hardware(Path(found))
+
+
+def _placed(bench: str, base: Path) -> str:
+    return str(base / bench) if bench.endswith(".toml") else bench
+
+
+class Folders:
+    """Numbered folders below a place: a new one for each run, or with `overwrite` the earlier ones."""
+
+    def __init__(self, place: Path, *, overwrite: bool) -> None:
+        self._place, self.overwrite = place, overwrite
+        self._count = 0
+
+    def next(self, name: str) -> Path:
+        """The next run's folder: NAME-001 and so on; without `overwrite` it is made, as no one else's."""
+        while True:
+            self._count += 1
+            folder = self._place / f"{name}-{self._count:03d}"
+            if self.overwrite:
+                return folder
+            try:
+                folder.mkdir(parents=True)
+            except FileExistsError:
+                continue  # of an earlier session, or of one beside this
+            return folder
+
+
+def leave_if_empty(folder: Path) -> None:
+    """Remove the folder of a run that did not begin."""
+    with contextlib.suppress(OSError):  # it holds something, or is not there
+        folder.rmdir()
+
+
+def folder_name(node: str) -> str:
+    """A test's id as the name of a folder."""
+    return "".join(character if character.isalnum() else "_" for character in node).strip("_")[-120:]
+
 
 _OUTCOME, _STARTED = "outcome.json", "has-started"
 

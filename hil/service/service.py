@@ -27,8 +27,7 @@ from hil.service.agents.agents_forecasts import AgentsForecasts
 from hil.service.agents.remote_bench import RemoteBench
 from hil.service.agents.run_upload import RunUploads
 from hil.service.archive import Archive, Keeper, Rounds
-from hil.service.audit import problem_of
-from hil.service.deferred_audit import DeferredAudit
+from hil.service.audit import DeferredAudit, problem_of
 from hil.service.files.catalogues import controller_catalogue, model_catalogue
 from hil.service.files.legacy_import import LegacyImport
 from hil.service.files.plans import Plans

@@ -1,8 +1,12 @@
-"""A canvas in the house style: units on every axis, the comfort band and the resonance marked."""
+"""A canvas in the house style: units on every axis, the comfort band and the resonance marked.
+
+A drawing as a figure of a report.
+"""
 
 from __future__ import annotations
 
 import io
+from dataclasses import dataclass
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
@@ -12,6 +16,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from hil.core.channels import COMFORT_BAND_HZ
 from reports import style
+from reports.labels import Label
 
 BLUE, VERMILLION, GREEN, PURPLE = (style.SERIES[r].light for r in ("gain", "phase", "third", "fourth"))
 ORANGE, GREY = style.SERIES["fifth"].light, style.SERIES["reference"].light
@@ -84,3 +89,22 @@ def render(figure: Figure) -> dict[str, bytes]:
             figure.savefig(buffer, format=kind, dpi=_DPI, metadata=metadata)  # type: ignore[arg-type]
         pictures[kind] = buffer.getvalue()
     return pictures
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """An SVG with its title and its words for who cannot see it."""
+
+    title: Label
+    svg: bytes
+    words: str
+    caption: str = ""
+    wide: bool = True
+
+    def as_svg(self) -> bytes:
+        """The picture."""
+        return self.svg
+
+    def alternative_text(self) -> str:
+        """What it shows, in words."""
+        return self.words

@@ -9,7 +9,7 @@ from typing import Any, Literal
 from hil.analysis.diagnosis import Diagnosis
 from hil.analysis.tuning import Confirmation, Kept, RefinedRun, Worse, worse_of
 from hil.core.errors.wording import share
-from reports.quantities import chance
+from reports.labels import chance
 
 Stage = Literal["consent", "identify", "before", "diagnose", "tune", "confirm"]
 

@@ -1,14 +1,60 @@
-"""What a bench file says about its simulation."""
+"""What a bench file says about its simulation, and what can be broken on it.
+
+What can be broken on a simulated bench, to see that the rest stays safe.
+
+Somebody between the nodes of a simulated bench and its hosts, who also reads the plant's own log.
+
+What a bench file says about its simulation.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from enum import Enum
 from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
 
 from hil.core.can.dbc import Names
+from hil.core.can.frames import FrameBlock
 from hil.core.model import Model
 from sim_backend.rmcu import RamSettings
+
+
+class Fault(Enum):
+    """A device that fails from now on."""
+
+    RMCU_SILENT = "the RMCU sends nothing and hears nothing; it gives no torque"
+    DYNO_SILENT = "the left rear dyno sends nothing and hears nothing; its drive is off"
+    RMCU_DEAF = "the RMCU hears no requests but keeps sending its state"
+    DYNO_DEAF = "the rear dynos hear no commands but keep sending their state"
+    RMCU_RESET = "the RMCU boots for 0.3 s; then it is off, without parameters, and no request has come"
+    DYNO_RESET = "the left rear dyno boots: its drive is off, what was configured is forgotten, its SYNC too"
+    DYNO_FAULT = "the left rear drive goes to fault and tells why"
+    DYNO_RUNAWAY = "the rear drives go to a speed that no one asked for, and cannot be switched off"
+
+
+class Tamper(Protocol):
+    """Loses, changes, delays and invents frames; breaks what it likes."""
+
+    def time_passes(self, now_s: float) -> None:
+        """The bench's time is `now_s`."""
+        ...
+
+    def to_hosts(self, bus: str, block: FrameBlock) -> FrameBlock:
+        """What hosts get in place of the frames that nodes have sent since they last looked."""
+        ...
+
+    def to_nodes(self, bus: str, frame_id: int, data: bytes) -> Iterable[tuple[int, bytes]]:
+        """What nodes get in place of a frame of a host; raises what an adapter would raise."""
+        ...
+
+    def look(self, first: int, rows: npt.NDArray[np.float64]) -> None:
+        """Samples of the plant, from number `first` on: rows of `hil.plant.closed_loop.tick`."""
+        ...
 
 
 @dataclass(frozen=True)

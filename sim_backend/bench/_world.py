@@ -16,11 +16,8 @@ from hil.plant.closed_loop import Noise, advance, state_at_rest
 from hil.plant.closed_loop import drive as drive
 from hil.plant.closed_loop import tick as T
 from hil.plant.controller import memory as memory
-from sim_backend.bench._faults import Fault
-from sim_backend.bench._inbox import Inbox, Sent
-from sim_backend.bench._outgoing import DYNO_BUS, RAM_BUS, RMCU_BUS, Outgoing
-from sim_backend.bench._settings import SENSED_CHANNELS, SensorFault, SimulationSettings
-from sim_backend.bench._tampering import Tamper
+from sim_backend.bench._outgoing import DYNO_BUS, RAM_BUS, RMCU_BUS, Inbox, Outgoing, Sent
+from sim_backend.bench._settings import SENSED_CHANNELS, Fault, SensorFault, SimulationSettings, Tamper
 from sim_backend.rcs import DynoNode, read_node
 from sim_backend.rmcu import LARGEST_TORQUE_NM, NEEDED, RmcuMemory, RmcuNode, XcpSlave
 

@@ -14,8 +14,7 @@ from canopen.objectdictionary import SIGNED_TYPES, ODVariable
 from hil.core.can.eds import ObjectDictionary, identifier_of, layout_of_pdo, read_eds
 from hil.core.can.signals import FrameLayout, in_units
 from hil.plant.closed_loop import drive as law
-from sim_backend.rcs._objects import INVALID_VALUE, ServedNode, check_value
-from sim_backend.rcs._power_states import PowerStates, State
+from sim_backend.rcs._objects import INVALID_VALUE, PowerStates, ServedNode, State, check_value
 
 _OPERATIONAL = 5
 _MODES = {3: law.SPEED, 4: law.TORQUE, -1: law.VEHICLE}

@@ -1,5 +1,6 @@
 """Metrics by name: one file a metric; other packages add theirs by entry point `hil.metrics`."""
 
+from test_plans.metrics._low_pass import energy_within, hann, periodogram
 from test_plans.metrics._metric import (
     ChannelName,
     DidNotSettleError,
@@ -8,7 +9,6 @@ from test_plans.metrics._metric import (
     NotReachedError,
     NoValueError,
 )
-from test_plans.metrics._periodogram import energy_within, hann, periodogram
 from test_plans.metrics._transient import transient_end_s
 from test_plans.metrics._window import WindowMetric
 from test_plans.metrics.band_energy import BandEnergy, BandEnergyMotorSpeed

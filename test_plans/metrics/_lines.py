@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from test_plans.conductor import Array
-from test_plans.metrics._periodogram import hann, without_trend
+from test_plans.metrics._low_pass import hann, without_trend
 
 DECAYS = 0.7  # a line that has this share left at the end decays
 _PERIODS = 3  # that make an oscillation

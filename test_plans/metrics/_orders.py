@@ -17,8 +17,8 @@ from hil.core.channels import TIME
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import Array
+from test_plans.metrics._low_pass import hann, without_trend
 from test_plans.metrics._metric import NoValueError
-from test_plans.metrics._periodogram import hann, without_trend
 from test_plans.metrics._samples import cut, evenly
 
 _FOLLOWED_S = 2.0  # over which an order's amplitude is taken, where the signal is as long

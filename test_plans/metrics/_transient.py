@@ -15,7 +15,7 @@ from hil.core.runtime.compiled import compiled
 from test_plans.metrics._low_pass import low_passed
 from test_plans.metrics._metric import NoValueError
 from test_plans.metrics._orders import orders_removed
-from test_plans.metrics._reference import step_size
+from test_plans.metrics._samples import step_size
 
 #: A transient is over when the torque stays within so much of the step for so long.
 BAND_PERCENT, HOLD_S = 5.0, 0.5

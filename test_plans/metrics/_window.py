@@ -11,8 +11,7 @@ from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import Array, PlannedSegment
 from test_plans.metrics._metric import ChannelName, Metric
-from test_plans.metrics._reference import no_step
-from test_plans.metrics._samples import cut
+from test_plans.metrics._samples import cut, no_step
 from test_plans.metrics._transient import FOLLOWS, transient_end_s, transient_in_words
 
 

@@ -10,8 +10,8 @@ from pydantic import Field, model_validator
 from hil.core.channels import CHANNELS
 from hil.core.recording import Recording
 from hil.core.result import Segment
+from test_plans.metrics._low_pass import energy_within, periodogram
 from test_plans.metrics._metric import ChannelName, NoValueError
-from test_plans.metrics._periodogram import energy_within, periodogram
 from test_plans.metrics._samples import cut
 from test_plans.metrics._window import WindowMetric
 

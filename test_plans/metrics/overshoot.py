@@ -9,7 +9,7 @@ from pydantic import Field
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import PlannedSegment
-from test_plans.metrics import _reference
+from test_plans.metrics import _samples
 from test_plans.metrics._metric import ChannelName
 from test_plans.metrics._transient import refuse_reversal
 from test_plans.metrics.peak import Extreme, is_downward
@@ -41,13 +41,13 @@ class Overshoot(Extreme):
         """The excess in the channel's unit."""
         refuse_reversal(recording, segment)
         lowest, highest = self.extremes(recording, segment)
-        reference = _reference.reference(segment, self.reference)
+        reference = _samples.reference(segment, self.reference)
         return max(0.0, reference - lowest if is_downward(segment) else highest - reference)
 
     def objection(self, segment: PlannedSegment) -> str:
         """No step, or one of another torque than the channel's."""
         if self.reference is None:
-            objection = _reference.no_step(segment, "reference") or _reference.not_comparable(
+            objection = _samples.no_step(segment, "reference") or _samples.not_comparable(
                 segment, self.channel, "reference"
             )
             if objection:
@@ -83,13 +83,13 @@ class OvershootPercent(Overshoot):
 
     def compute(self, recording: Recording, segment: Segment) -> float:
         """The excess in percent."""
-        size = _reference.step_size(segment, self.step_size)
+        size = _samples.step_size(segment, self.step_size)
         return 100 * super().compute(recording, segment) / size
 
     def objection(self, segment: PlannedSegment) -> str:
         """Also when the step's size is not the channel's."""
         if self.step_size is None:
-            objection = _reference.no_step(segment, "step_size") or _reference.not_comparable(
+            objection = _samples.no_step(segment, "step_size") or _samples.not_comparable(
                 segment, self.channel, "step_size"
             )
             if objection:

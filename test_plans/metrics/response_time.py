@@ -11,10 +11,10 @@ from pydantic import Field
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import Array, PlannedSegment
-from test_plans.metrics import _reference
+from test_plans.metrics import _samples
+from test_plans.metrics._low_pass import hann
 from test_plans.metrics._metric import ChannelName, NotReachedError, NoValueError
 from test_plans.metrics._orders import orders_removed
-from test_plans.metrics._periodogram import hann
 from test_plans.metrics._samples import cut
 from test_plans.metrics._transient import refuse_reversal
 from test_plans.metrics._window import WindowMetric
@@ -30,8 +30,8 @@ class _Following(WindowMetric):
     def objection(self, segment: PlannedSegment) -> str:
         """No step, or one of another torque than the channel's."""
         return (
-            _reference.no_step(segment)
-            or _reference.not_comparable(segment, self.channel)
+            _samples.no_step(segment)
+            or _samples.not_comparable(segment, self.channel)
             or super().objection(segment)
         )
 
@@ -229,7 +229,7 @@ class Holding(_Following):
 def _signed_size(segment: Segment) -> float:
     """Of the step, in its direction; NoValueError if there is none."""
     return math.copysign(
-        _reference.step_size(segment, None), segment.reference_after - segment.reference_before
+        _samples.step_size(segment, None), segment.reference_after - segment.reference_before
     )
 
 

@@ -10,8 +10,8 @@ from hil.core.recording import Recording
 from hil.core.result import Segment
 from hil.core.runtime.compiled import compiled
 from test_plans.conductor import Array
+from test_plans.metrics._low_pass import periodogram
 from test_plans.metrics._metric import ChannelName, NoValueError
-from test_plans.metrics._periodogram import periodogram
 from test_plans.metrics._samples import cut, evenly
 from test_plans.metrics._window import WindowMetric
 

@@ -11,7 +11,7 @@ from hil.core.channels import CHANNELS
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import Array, PlannedSegment
-from test_plans.metrics import _reference
+from test_plans.metrics import _samples
 from test_plans.metrics._low_pass import ORDER, low_passed
 from test_plans.metrics._metric import ChannelName, DidNotSettleError, NoValueError
 from test_plans.metrics._orders import orders_removed
@@ -59,7 +59,7 @@ class SettlingTime(WindowMetric):
 
     def compute(self, recording: Recording, segment: Segment) -> float:
         """Seconds after the step; DidNotSettleError if it is outside during the last `mean_s`."""
-        half_width = self.band_percent / 100 * _reference.step_size(segment, self.step_size)
+        half_width = self.band_percent / 100 * _samples.step_size(segment, self.step_size)
         refuse_reversal(recording, segment)
         start, end = self.bounds_s(recording, segment)
         if end - start <= self.mean_s:
@@ -101,7 +101,7 @@ class SettlingTime(WindowMetric):
     def objection(self, segment: PlannedSegment) -> str:
         """No step, one of another torque than the channel's, or no room for the mean."""
         if self.step_size is None:
-            objection = _reference.no_step(segment, "step_size") or _reference.not_comparable(
+            objection = _samples.no_step(segment, "step_size") or _samples.not_comparable(
                 segment, self.channel, "step_size"
             )
             if objection:
@@ -152,9 +152,7 @@ class SettlingToReference(SettlingTime):
     def objection(self, segment: PlannedSegment) -> str:
         """Also when the reference is not the channel's."""
         objection = (
-            ""
-            if self.reference is not None
-            else _reference.not_comparable(segment, self.channel, "reference")
+            "" if self.reference is not None else _samples.not_comparable(segment, self.channel, "reference")
         )
         return objection or super().objection(segment)
 
@@ -164,7 +162,7 @@ class SettlingToReference(SettlingTime):
 
     def _final(self, segment: Segment, last: Array) -> tuple[float, str]:
         del last
-        return _reference.reference(segment, self.reference), "the reference"
+        return _samples.reference(segment, self.reference), "the reference"
 
 
 class Ripple(WindowMetric):

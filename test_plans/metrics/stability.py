@@ -14,8 +14,7 @@ from test_plans.conductor import PlannedSegment
 from test_plans.metrics import _lines
 from test_plans.metrics._metric import ChannelName, Metric, NoValueError
 from test_plans.metrics._orders import orders_removed
-from test_plans.metrics._reference import no_step
-from test_plans.metrics._samples import cut, evenly
+from test_plans.metrics._samples import cut, evenly, no_step
 from test_plans.metrics._window import WindowMetric
 
 _WHEEL = "wheel_speed_rad_s"

@@ -9,8 +9,8 @@ import can
 import pytest
 
 from drivers import BusHealth, CanSettings, Wire, open_can
+from drivers.bus_health import frame
 from drivers.can_adapter import enlarged
-from drivers.linux_errors import frame
 from hil.core.errors import BenchError
 from tests.clocks import SteppedClock
 from tests.drivers.pseudo_adapter import warnings_in

@@ -1,6 +1,6 @@
 """What `ip -json` says of a CAN interface (iproute2 6.1)."""
 
-from drivers.linux_links import Link, link_from_json, link_of
+from drivers.bus_health import Link, link_from_json, link_of
 
 CAN0 = """[{"ifindex":4,"ifname":"can0","flags":["NOARP","UP","LOWER_UP","ECHO"],"mtu":16,"operstate":"UP",
 "link_type":"can","linkinfo":{"info_kind":"can","info_data":{"ctrlmode":["LISTEN-ONLY","BERR-REPORTING"],

@@ -10,7 +10,7 @@ import can
 import pytest
 
 from drivers import BusHealth, BusLoop, Wire, open_can
-from drivers.linux_errors import remark
+from drivers.bus_health import remark
 from drivers.slcan import _message
 from hil.core.can.frames import ERROR_FRAME
 from hil.core.errors import BenchError

@@ -50,11 +50,11 @@ FILES = {
         *(
             f"hil/engine/{name}.py"
             for name in (
-                *("bench/limit_tables", "bench/ranges", "bench/range_scan", "bench/computed_channels"),
+                *("bench/ranges", "bench/range_scan", "bench/computed_channels"),
                 *("bench/bench_lock", "run/limits", "run/zero", "run/hold", "run/operator"),
-                *("run/run_monitoring", "run/failures", "run/arming", "run/safety"),
+                *("run/run_monitoring", "run/arming", "run/safety"),
                 *("stop/emergency_stop", "stop/stopping", "process/supervisor"),
-                *("process/hardware_process", "process/safe_state_check", "process/orphaned_run"),
+                *("process/hardware_process", "process/lost_process"),
             )
         ),
         *(f"drivers/{name}.py" for name in ("rmcu/_driver", "dyno/_driver", "dyno/_node", "panel/_panel")),

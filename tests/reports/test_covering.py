@@ -2,10 +2,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from reports.covering import STRETCHES, outlines
 from reports.figure import Figure, Level, Trace
 from reports.labels import Label
 from reports.plotly_figure import plotly_figure
+from reports.stretch import STRETCHES, outlines
 from reports.svg_figure import svg_figure
 
 TIME = np.arange(20_000) / 1000.0

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from reports.decimation import break_at_gaps, envelope
+from reports.stretch import break_at_gaps, envelope
 
 
 def test_peaks_survive() -> None:

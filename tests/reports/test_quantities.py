@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from reports import quantities
+from reports import labels
 
 
 @pytest.mark.parametrize(
@@ -22,33 +22,33 @@ from reports import quantities
     ],
 )
 def test_numbers_have_four_digits_and_a_true_minus(value: float | None, text: str) -> None:
-    assert quantities.number(value) == text
+    assert labels.number(value) == text
 
 
 def test_rounding_leaves_no_negative_zero() -> None:
-    assert quantities.number(-0.0004, decimals=2) == "0.00"
+    assert labels.number(-0.0004, decimals=2) == "0.00"
 
 
 @pytest.mark.parametrize(
     ("value", "text"), [(564.0, "564"), (2.6775, "2.6775"), (0.001, "0.001"), (20, "20")]
 )
 def test_a_chosen_number_gains_no_digits(value: float, text: str) -> None:
-    assert quantities.nominal(value) == text
+    assert labels.nominal(value) == text
 
 
 def test_a_quantity_keeps_number_and_unit_together() -> None:
-    assert quantities.quantity(357.1, "N m") == "357.1\u202fN\u202fm"
-    assert quantities.quantity(0.95, "1") == "0.9500"
+    assert labels.quantity(357.1, "N m") == "357.1\u202fN\u202fm"
+    assert labels.quantity(0.95, "1") == "0.9500"
 
 
 def test_file_sizes() -> None:
-    assert quantities.file_size(54) == "54\u202fB"
-    assert quantities.file_size(41_300_000) == "41.30\u202fMB"
+    assert labels.file_size(54) == "54\u202fB"
+    assert labels.file_size(41_300_000) == "41.30\u202fMB"
 
 
 @pytest.mark.parametrize(("share", "said"), [(0.001, "<1%"), (0.26, "26%"), (0.99, "99%"), (0.995, ">99%")])
 def test_nothing_is_quite_certain(share, said):
-    assert quantities.chance(share) == said
+    assert labels.chance(share) == said
 
 
 @pytest.mark.parametrize(
@@ -62,10 +62,10 @@ def test_nothing_is_quite_certain(share, said):
     ],
 )
 def test_shares_are_set_with_thin_spaces_and_a_true_minus(share: float | None, text: str) -> None:
-    assert quantities.share(share) == text
+    assert labels.share(share) == text
 
 
 def test_a_factor_has_digits_that_mean_something() -> None:
-    assert quantities.factor(1.0512) == "1.05"
-    assert quantities.factor(3392320.78) == ">\u202f1000"
-    assert quantities.factor(None) == "–"
+    assert labels.factor(1.0512) == "1.05"
+    assert labels.factor(3392320.78) == ">\u202f1000"
+    assert labels.factor(None) == "–"

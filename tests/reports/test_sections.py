@@ -7,7 +7,7 @@ import pytest
 
 from hil.core.recording import Recording
 from hil.core.result import RunResult, Segment
-from reports import quantities
+from reports import labels
 from reports.sections import sections
 
 
@@ -130,7 +130,7 @@ def test_peaks_that_criteria_judge_are_marked_where_they_are(recording: Recordin
         after = trace.x >= 0
         highest = int(np.nanargmax(trace.y[after]))
         assert (mark.x, mark.y) == (pytest.approx(trace.x[after][highest]), trace.y[after][highest])
-        assert f"at {quantities.quantity(mark.x, 's', 3)}" in figure.caption
+        assert f"at {labels.quantity(mark.x, 's', 3)}" in figure.caption
 
 
 def test_what_further_devices_measured_is_drawn_on_the_same_time(

@@ -3,8 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reports.quantities import THIN
-from reports.spectrum import amplitude_spectrum, stretch_in_words
+from reports.channel_figures import amplitude_spectrum, stretch_in_words
+from reports.labels import THIN
 
 
 @pytest.mark.parametrize("hann", [True, False])

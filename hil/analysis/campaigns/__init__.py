@@ -1,7 +1,6 @@
 """Campaigns: which simulations there are, and what their table says."""
 
-from hil.analysis.campaigns._axes import MOST_SIMULATIONS, MOST_VALUES
-from hil.analysis.campaigns._cases import Axis, Case, Cases
+from hil.analysis.campaigns._axes import MOST_SIMULATIONS, MOST_VALUES, Axis, Case, Cases
 from hil.analysis.campaigns._file import (
     CampaignFile,
     campaign_from_text,

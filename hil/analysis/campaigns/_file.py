@@ -14,10 +14,8 @@ from hil.core.errors import BadInputError
 from hil.core.errors.wording import did_you_mean
 from hil.core.files import is_file
 from hil.core.files.toml_file import FORMAT, FormatNumber
-from test_plans.building import Strict, brief, build, mapping_at
-from test_plans.loading import LIBRARY
-from test_plans.mistakes import PlanMistakes
-from test_plans.named_files import named_file, names_in
+from test_plans.building import PlanMistakes, Strict, brief, build, mapping_at
+from test_plans.loading import LIBRARY, named_file, names_in
 from test_plans.yaml_document import Document, KeyPath, read_yaml, yaml_text
 
 CAMPAIGNS = Path(__file__).parent / "library"

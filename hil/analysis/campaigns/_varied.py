@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from hil.analysis.campaigns._cases import GROUPS, Axis
+from hil.analysis.campaigns._axes import GROUPS, Axis
 from hil.analysis.campaigns._file import CampaignFile
 from hil.analysis.tuning import ALTERNATIVES, PARAMETERS
 from hil.core.effects import EFFECTS
@@ -12,7 +12,7 @@ from hil.core.errors import BadInputError
 from hil.core.errors.wording import did_you_mean
 from hil.core.model import EffectUse, Model, model_from_dict, parameter_unit
 from test_plans import Plan
-from test_plans.mistakes import PlanMistakes
+from test_plans.building import PlanMistakes
 
 Check = Callable[[float], object]
 

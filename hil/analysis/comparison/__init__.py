@@ -8,10 +8,11 @@ from hil.analysis.comparison._comparison import (
     compare,
     difference,
 )
-from hil.analysis.comparison._differences import Difference, differences
 from hil.analysis.comparison._runs import (
     ComparedRun,
+    Difference,
     controllers_that_differ,
+    differences,
     names_by_variables,
     refuse_other_plans,
 )

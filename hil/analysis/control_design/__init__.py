@@ -7,9 +7,9 @@ from hil.analysis.control_design._acceptance import (
 )
 from hil.analysis.control_design._closed_loop import closed_loop_poles
 from hil.analysis.control_design._design import design, measured_loop
-from hil.analysis.control_design._discretise import DiscreteFilter, tustin
 from hil.analysis.control_design._drafts import Draft, Drafts
 from hil.analysis.control_design._laws import (
+    DiscreteFilter,
     Normalisation,
     feed_forward,
     feedback_functions,
@@ -19,6 +19,7 @@ from hil.analysis.control_design._laws import (
     observer_filter,
     pole_assignment,
     speed_filter,
+    tustin,
 )
 from hil.analysis.control_design._loop import (
     Margins,
@@ -29,11 +30,22 @@ from hil.analysis.control_design._loop import (
     margins,
     sampled_response,
 )
-from hil.analysis.control_design._optimize import MarginLimits, Objective, Optimum, optimize
-from hil.analysis.control_design._plant import DesignPlant, design_plant, resonance_hz
+from hil.analysis.control_design._optimize import (
+    MarginLimits,
+    Objective,
+    Optimum,
+    TradeOff,
+    optimize,
+    trade_off,
+)
+from hil.analysis.control_design._plant import (
+    DesignPlant,
+    PlantSet,
+    design_plant,
+    possible_plants,
+    resonance_hz,
+)
 from hil.analysis.control_design._spec import Design, DesignSpec, Loop, Robustness
-from hil.analysis.control_design._trade_off import TradeOff, trade_off
-from hil.analysis.control_design._uncertainty import PlantSet, possible_plants
 from hil.core.channels import COMFORT_BAND_HZ
 
 __all__ = [

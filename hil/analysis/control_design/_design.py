@@ -10,13 +10,14 @@ import numpy.typing as npt
 
 from hil.analysis.control_design._acceptance import beyond_the_data, refuse_unstable, warnings_of
 from hil.analysis.control_design._assembly import controller_of, refuse_resonance, speed_controls
-from hil.analysis.control_design._discretise import DiscreteFilter, tustin
 from hil.analysis.control_design._laws import (
+    DiscreteFilter,
     feed_forward,
     feedback_functions,
     observer_filter,
     pole_assignment,
     speed_filter,
+    tustin,
 )
 from hil.analysis.control_design._loop import (
     feedback_response,
@@ -25,11 +26,9 @@ from hil.analysis.control_design._loop import (
     margins,
     sampled_response,
 )
-from hil.analysis.control_design._optimize import Optimum, optimize
-from hil.analysis.control_design._plant import design_plant
+from hil.analysis.control_design._optimize import Optimum, optimize, trade_off
+from hil.analysis.control_design._plant import design_plant, possible_plants
 from hil.analysis.control_design._spec import Design, DesignSpec, Loop, Robustness
-from hil.analysis.control_design._trade_off import trade_off
-from hil.analysis.control_design._uncertainty import possible_plants
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.analysis.plausible import within_floating_point
 from hil.core.channels import OUTPUTS

@@ -8,13 +8,10 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.control_design._discretise import DiscreteFilter
-from hil.analysis.control_design._laws import Normalisation
+from hil.analysis.control_design._laws import DiscreteFilter, Normalisation
 from hil.analysis.control_design._loop import Margins
-from hil.analysis.control_design._optimize import MarginLimits, Objective, Optimum
-from hil.analysis.control_design._plant import DesignPlant
-from hil.analysis.control_design._trade_off import TradeOff
-from hil.analysis.control_design._uncertainty import PlantSet
+from hil.analysis.control_design._optimize import MarginLimits, Objective, Optimum, TradeOff
+from hil.analysis.control_design._plant import DesignPlant, PlantSet
 from hil.core.channels import TICK_S
 from hil.core.controller import Controller
 from hil.core.controller.bounds import LARGEST_TORQUE_NM, SAMPLE_TIMES_S, SLOWEST_HZ

@@ -8,7 +8,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from hil.analysis.frequency_response._experiment import Experiment
+from hil.analysis.frequency_response._experiment import Experiment, Lines, fourier_lines
 from hil.analysis.frequency_response._local_polynomial import local_polynomial
 from hil.analysis.frequency_response._periodic import (
     best_linear_approximation,
@@ -25,7 +25,6 @@ from hil.analysis.frequency_response._quality import (
     excited_bands,
 )
 from hil.analysis.frequency_response._result import FrequencyResponse
-from hil.analysis.frequency_response._spectra import Lines, fourier_lines
 from hil.analysis.frequency_response._welch import averaged_spectra
 from hil.core.errors import BadInputError
 

@@ -12,9 +12,9 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.frequency_response._experiment import Lines
 from hil.analysis.frequency_response._quality import UnfitDataError
 from hil.analysis.frequency_response._result import FrequencyResponse
-from hil.analysis.frequency_response._spectra import Lines
 
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -14,8 +14,14 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.frequency_response import FrequencyResponse
-from hil.analysis.identification._modal import Modes, Structure, basis, basis_derivatives, polynomials
-from hil.analysis.identification._vector_fitting import starting_poles
+from hil.analysis.identification._modal import (
+    Modes,
+    Structure,
+    basis,
+    basis_derivatives,
+    polynomials,
+    starting_poles,
+)
 from hil.core.errors import BadInputError
 
 Array = npt.NDArray[np.float64]

@@ -1,6 +1,6 @@
 """A tuned controller refined where it is measured: few runs, each within a trust region around the best.
 
-Predicted margins are corrected by what the runs have shown (`_correction`); the region grows where a run
+Predicted margins are corrected by what the runs have shown (`_trust_step`); the region grows where a run
 comes out as expected and shrinks where it does not (A. R. Conn, N. I. M. Gould, Ph. L. Toint, "Trust-Region
 Methods", SIAM 2000, ch. 6). The best is always one that was measured.
 """
@@ -15,11 +15,10 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.tuning._confirmed import Confirmation, confirmation
-from hil.analysis.tuning._correction import Correction, correction_of
 from hil.analysis.tuning._parameters import Space
 from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._trial import Trial, Tried
-from hil.analysis.tuning._trust_step import Promise, TrustStep
+from hil.analysis.tuning._trust_step import Correction, Promise, TrustStep, correction_of
 from hil.core.controller import Controller
 from hil.core.errors.wording import share as percent
 from hil.core.result import CriterionResult

@@ -9,7 +9,7 @@ from typing import Any
 from hil.analysis.tuning import Refinement, RefinementBudget, Tuning, refine
 from hil.app.feedback import Feedback
 from hil.app.tuning.bench_runs import FOLDER, Allowed, WireBench
-from reports.outputs.refinement import refinement_summary
+from reports.outputs.tuning import refinement_summary
 from reports.tuning_report import Shown
 
 

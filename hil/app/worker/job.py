@@ -56,7 +56,7 @@ def main() -> None:
 
 
 def _guarded(folder: Path) -> int:
-    from hil.app.failures import error_of
+    from hil.app.interrupts import error_of
 
     try:
         return _execute(folder)

@@ -155,7 +155,7 @@ def _stop_line() -> IpcPipe | None:
 def _execute(asked: RunAsked, service: _Service, pipe: IpcPipe) -> int:
     from hil.app.log import LOG
     from hil.app.run import RunSettings
-    from hil.engine.ipc.ipc import ended_of, request_of
+    from hil.engine.ipc.ipc_data import ended_of, request_of
 
     request = request_of(asked)
     out = Path(asked.out)

@@ -12,8 +12,7 @@ from hil.app.result_file import to_json
 from hil.app.results_folder import results_in
 from hil.cli.options.benches import BenchJog
 from hil.cli.output import console, plain_table, print_json, progress
-from hil.cli.streams import complain
-from hil.cli.terminal import operators_terminal
+from hil.cli.streams import complain, operators_terminal
 from hil.core.errors import BenchError
 from hil.core.errors.wording import printable
 from hil.core.files import write_atomically

@@ -7,14 +7,14 @@ from pathlib import Path
 from hil.analysis.diagnosis import INTERRUPTED, Diagnosis
 from hil.app.diagnose import FILES, diagnose_recordings
 from hil.app.interrupts import EXIT_CODE
-from hil.app.reading import reading_in_words
 from hil.app.requests import DiagnoseRequest
+from hil.app.result_file import reading_in_words
 from hil.cli.inputs import named_numbers, request_of
 from hil.cli.options.models import Diagnose
 from hil.cli.output import TERMINAL, print_json
 from hil.core.errors.wording import factor, share
 from reports.diagnosis_content import MOST_WORSE
-from reports.quantities import chance
+from reports.labels import chance
 
 _WORTH_A_LINE = 0.02
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from hil.app.feedback import warn_of_damage
-from hil.app.reading import reading_of
+from hil.app.result_file import reading_of
 from hil.app.results_folder import refuse_file, results_in
 from hil.app.run_inputs import command_again, inputs_of
 from hil.cli.options.runs import Export

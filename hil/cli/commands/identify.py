@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from hil.app.identify import identify_recordings
-from hil.app.reading import reading_in_words
 from hil.app.requests import IdentifyRequest
+from hil.app.result_file import reading_in_words
 from hil.cli.inputs import request_of
 from hil.cli.options.models import Identify
 from hil.cli.output import TERMINAL, print_json

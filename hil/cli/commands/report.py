@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from hil.app.reading import reading_in_words
 from hil.app.report import renew_report
 from hil.app.requests import ReportRequest
+from hil.app.result_file import reading_in_words
 from hil.cli.inputs import request_of
 from hil.cli.options.runs import Report
 from hil.cli.output import TERMINAL, console, count_in_words, print_criteria, print_json

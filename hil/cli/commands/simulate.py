@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hil.app.feedback import warn_of_damage
-from hil.app.reading import reading_of
+from hil.app.result_file import reading_of
 from hil.app.results_folder import refuse_file
 from hil.cli.options.models import Simulate
 from hil.cli.output import TERMINAL, console, print_json, warn

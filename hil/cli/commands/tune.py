@@ -19,8 +19,7 @@ from hil.cli.output import TERMINAL, console, plain_table, print_json
 from hil.cli.streams import complain
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import share
-from reports.outputs.refinement import REFINEMENT_HEAD, refinement_rows, refinement_verdict
-from reports.outputs.tuning import text_of
+from reports.outputs.tuning import REFINEMENT_HEAD, refinement_rows, refinement_verdict, text_of
 
 
 def execute(options: Tune) -> int:

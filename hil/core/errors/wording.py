@@ -1,6 +1,6 @@
 """Shares and multiples as people read them: digits that mean something (docs/reference/numbers.md).
 
-Plain text, for terminals and sentences; `reports.quantities` sets the same with its own spaces and signs.
+Plain text, for terminals and sentences; `reports.labels` sets the same with its own spaces and signs.
 
 Text of messages: what may be shown, what was meant, several findings at once.
 """

@@ -17,18 +17,18 @@ from hil.core.recording._table import Recording
 _PACKAGE = "hil.core.recording"
 #: Module and function that read an ending.
 _READERS = {
-    ".mcap": ("_mapped_mcap", "read_mapped_mcap"),
+    ".mcap": ("_mcap_reader", "read_mapped_mcap"),
     **dict.fromkeys((".csv", ".txt", ".tsv", ".lvm", ".ascii"), ("_csv_reader", "read_csv")),
     ".parquet": ("_parquet", "read_parquet"),
-    ".mf4": ("_mdf", "read_mdf"),
+    ".mf4": ("mdf", "read_mdf"),
     ".mat": ("_mat", "read_mat"),
     **dict.fromkeys((".h5", ".hdf5", ".hdf"), ("_hdf5", "read_hdf5")),
     ".tdms": ("_tdms", "read_tdms"),
 }
 _WRITERS = {
-    ".csv": ("_csv_writer", "write_csv"),
+    ".csv": ("_csv_block", "write_csv"),
     ".parquet": ("_parquet", "write_parquet"),
-    ".mf4": ("_mdf", "write_mdf"),
+    ".mf4": ("mdf", "write_mdf"),
     ".mat": ("_mat", "write_mat"),
 }
 READ, WRITTEN = tuple(_READERS), tuple(_WRITERS)

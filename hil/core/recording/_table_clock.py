@@ -1,4 +1,4 @@
-"""When the samples of another tool's table were taken: stamps, several rates, numbers that stand for no value.
+"""When samples of another tool's table were taken: stamps, several rates, numbers that stand for no value.
 
 Tables of several rates, whose slower columns have blanks between; and numbers that stand for no value.
 

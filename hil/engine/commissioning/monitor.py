@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from drivers import BusLoop, Device, MotorControl, Samples
-from drivers.linux_links import link_of
+from drivers.bus_health import link_of
 from hil.core.can.frames import FrameBlock
 from hil.core.errors import BadInputError, BenchError, InterruptError
 from hil.core.errors.wording import printable

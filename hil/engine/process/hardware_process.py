@@ -17,7 +17,8 @@ from pathlib import Path
 
 from hil.core.channels import PACKAGES
 from hil.core.errors import BenchError, HilError
-from hil.engine.ipc.ipc import analysed_apart, ended_of, request_of
+from hil.engine.ipc.ipc import analysed_apart
+from hil.engine.ipc.ipc_data import ended_of, request_of
 from hil.engine.ipc.ipc_messages import (
     Concluded,
     EmergencyAsked,

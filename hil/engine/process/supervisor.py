@@ -18,7 +18,8 @@ from collections.abc import Iterator, Sequence
 from hil.core.errors import BenchError, EmergencyStopError, HilError, InterruptError
 from hil.core.result import SafeState
 from hil.engine.bench.bench_tables import BenchFile
-from hil.engine.ipc.ipc import RECORDING, RunOutcome, RunRequest, asked_of, outcome_of
+from hil.engine.ipc.ipc import RECORDING, RunOutcome, RunRequest
+from hil.engine.ipc.ipc_data import asked_of, outcome_of
 from hil.engine.ipc.ipc_messages import (
     Concluded,
     EmergencyAsked,

@@ -23,8 +23,7 @@ from hil.core.errors import BadInputError
 from hil.core.files import read_text
 from hil.service.api._access import Engineer, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
-from hil.service.files.catalogue import Catalogue
-from hil.service.files.catalogues import controller_data, model_data
+from hil.service.files.catalogues import Catalogue, controller_data, model_data
 from hil.service.service import Service
 
 router = APIRouter(tags=["design"])

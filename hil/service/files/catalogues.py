@@ -1,20 +1,80 @@
-"""The catalogues of models and controllers, and the API data of their entries."""
+"""The catalogue of models or controllers of a service: shipped ones and uploads.
+
+The catalogues of models and controllers, and the API data of their entries.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import functools
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Generic, TypeVar
 
 from hil.api_schemas.design import ControllerData, ModelData
 from hil.core.controller import Controller, controller_from_toml
 from hil.core.errors import BadInputError
+from hil.core.files import read_text
 from hil.core.files.toml_file import parse_toml
 from hil.core.model import Model, load_model, model_from_dict
 from hil.engine.bench.bench_file import shipped
 from hil.plant import refuse_too_stiff
-from hil.service.files.catalogue import Catalogue
-from hil.service.files.uploads import Uploads
+from hil.service.files.uploads import NameTakenError, Uploads
 from test_plans import library_controllers
+
+T = TypeVar("T")
+_KEPT = 200  # texts that stay read
+
+
+class Catalogue(Generic[T]):
+    """Files of one kind by name. A name stands for one content: who wants to change it gives a new name.
+
+    Args:
+        given: those that people gave, each as `<name>.toml`.
+        built_in: files that are always there.
+        parse: makes of a file's text what it says; BadInputError if it cannot be used.
+    """
+
+    def __init__(self, given: Uploads, built_in: Mapping[str, Path], parse: Callable[[str, str], T]) -> None:
+        self._given, self._built_in = given, dict(built_in)
+        self._parse = functools.lru_cache(_KEPT)(parse)
+
+    def paths(self) -> dict[str, Path]:
+        """Where all are by name, those that are built in first."""
+        return {**self._built_in, **{n: p for n, p in self._given.paths().items() if n not in self._built_in}}
+
+    def is_built_in(self, name: str) -> bool:
+        """Whether it is always there."""
+        return name in self._built_in
+
+    def path(self, name: str) -> Path | None:
+        """Where it is; None if there is none."""
+        return self._built_in[name] if name in self._built_in else self._given.path(name)
+
+    def read(self, path: Path) -> T:
+        """What one says that lies there.
+
+        Raises:
+            BadInputError: it cannot be read any more.
+        """
+        return self._parse(read_text(path), path.name)
+
+    def give(self, name: str, text: str, by: str) -> T:
+        """Keep one; the same text may be given again.
+
+        Raises:
+            NameTakenError: the name stands for another.
+            BadInputError: it cannot be used.
+        """
+        if self.is_built_in(name):
+            raise NameTakenError("is the name of a built-in one", where=name, fix="give it another name")
+        found = self._parse(text, f"{name}.toml")
+        self._given.give(name, text, by)
+        return found
+
+    def remove(self, name: str) -> bool:
+        """Remove one that was given; false if there is none."""
+        return not self.is_built_in(name) and self._given.remove(name)
 
 
 def model_catalogue(given: Uploads) -> Catalogue[Model]:

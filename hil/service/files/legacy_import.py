@@ -20,7 +20,7 @@ from hil.api_schemas.upload import GivenKind, KeptApart
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
 from hil.execution.data_folder import files_of
-from hil.service.files.catalogue import Catalogue
+from hil.service.files.catalogues import Catalogue
 from hil.service.files.plans import Plans
 from hil.service.store import GivenStore, LogStore
 from test_plans import plan_from_text

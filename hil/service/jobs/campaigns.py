@@ -29,7 +29,7 @@ from hil.app.requests import CampaignRequest
 from hil.core.errors import BenchError, HilError
 from hil.core.files import make_directory
 from hil.core.files.locks import HeldError, lock_on
-from hil.service.jobs.job_process import kill_left
+from hil.service.jobs.job_repository import kill_left
 from hil.service.jobs.jobs import Jobs
 from hil.service.jobs.shared_results import SharedResults
 from hil.service.worker_pool import WorkerPool

@@ -17,8 +17,7 @@ from typing import Any, Generic, TypeVar, cast
 from hil.api_schemas.campaign import CampaignData
 from hil.api_schemas.study import StudyData
 from hil.core.errors import BadInputError
-from hil.service.jobs.job_process import JobProcess
-from hil.service.jobs.job_repository import JobRepository, files_in_results
+from hil.service.jobs.job_repository import JobProcess, JobRepository, files_in_results
 from hil.service.jobs.shared_results import SharedResults
 from hil.service.store import in_turns
 

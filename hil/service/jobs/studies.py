@@ -14,7 +14,7 @@ from typing import Any
 from hil.api_schemas.study import StudyData, StudyKind
 from hil.app.requests import DiagnoseRequest, IdentifyRequest
 from hil.core.errors import HilError
-from hil.service.jobs.job_process import kill_left
+from hil.service.jobs.job_repository import kill_left
 from hil.service.jobs.jobs import Jobs
 from hil.service.jobs.shared_results import SharedResults
 

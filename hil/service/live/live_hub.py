@@ -1,20 +1,38 @@
-"""Live data for the viewers of each bench: the run under way or the last one, and its judgement."""
+"""Encodes what many viewers get once, and keeps it for the next.
+
+Live data for the viewers of each bench: the run under way or the last one, and its judgement.
+"""
 
 from __future__ import annotations
 
 import asyncio
 import time
 from collections import defaultdict
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass, field
 
 from hil.core.errors import HilError
 from hil.core.result import CriterionResult
 from hil.engine import RECORDING
 from hil.execution.run_execution import PLAN, RunningRun
-from hil.service.live.broadcast_cache import BroadcastCache
 from hil.service.live.live import LiveRun
 from test_plans import plan_from_text
+
+
+class BroadcastCache:
+    """The newest text of each kind that viewers were sent."""
+
+    def __init__(self) -> None:
+        self._newest: dict[str, tuple[object, str]] = {}
+
+    def text(self, kind: str, of: Hashable, make: Callable[[], str]) -> str:
+        """What was stated of it, or what `make` says."""
+        known, text = self._newest.get(kind, (None, ""))
+        if known != of:
+            text = make()
+            self._newest[kind] = of, text
+        return text
+
 
 _LOOK_S = 0.05  # a viewer is sent as many updates
 _JUDGE_S = 1.0

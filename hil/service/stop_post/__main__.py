@@ -21,9 +21,8 @@ from pathlib import Path
 from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.engine.ipc.ipc_messages import to_line as to_run
 from hil.service.connection_limit import allow_all_descriptors
-from hil.service.stop_post._answering import Answering, Asked, RefusedError, answer, refusal
+from hil.service.stop_post._answering import Answering, Asked, Listener, RefusedError, answer, refusal
 from hil.service.stop_post._latches import Latched, Latches
-from hil.service.stop_post._listener import Listener
 from hil.service.stop_post._messages import (
     Benches,
     Line,

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from hil.core.errors import BadInputError, HilError
-from hil.service.worker_pool import _campaigning, _comparing, _designing, _fitting, _reading
+from hil.service.worker_pool import _campaigning, _comparing, _designing, plan_reading
 from hil.service.worker_pool._worker_pool import ANSWERED, READING, REFUSED
 
 _IDLE_S = 600.0
@@ -22,13 +22,13 @@ TASKS: dict[str, Callable[..., dict[str, Any]]] = {
     "traces": _comparing.traces,
     "draft": _designing.draft,
     "design": _designing.designed,
-    "fitted": _fitting.fitted,
+    "fitted": _designing.fitted,
     "campaign": _campaigning.given,
     "campaign_so_far": _campaigning.so_far,
     "campaign_table": _campaigning.table,
-    "read_plan": _reading.plan,
-    "read_model": _reading.model,
-    "read_controller": _reading.controller,
+    "read_plan": plan_reading.plan,
+    "read_model": plan_reading.model,
+    "read_controller": plan_reading.controller,
     "campaign_examples": _campaigning.examples,
 }
 

@@ -1,13 +1,20 @@
-"""What a plan says, and whether a service may take it; also for a process that reads what is given first."""
+"""What a plan says, and whether a service may take it; also for a process that reads what is given first.
+
+Reads what people give before the service takes it: whatever it is, it holds no one up here.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from hil.api_schemas.api import PlanData, VariableData
+from hil.core.controller import controller_from_toml
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable
+from hil.core.files.toml_file import parse_toml
+from hil.core.model import model_from_dict
 from hil.execution.data_folder import files_of
 from test_plans import Plan, plan_from_text
 
@@ -75,3 +82,34 @@ def hazard_of(plan: Plan) -> str:
     if not plan.hazardous:
         return ""
     return plan.hazardous if isinstance(plan.hazardous, str) else "the plan is marked hazardous"
+
+
+def plan(name: str, text: str, folder: str) -> dict[str, Any]:
+    """Fields of `GivenPlan`.
+
+    Raises:
+        BadInputError: all that is wrong with it.
+    """
+    found = read_given(name, text, Path(folder))
+    return {"data": found.data.model_dump(mode="json"), "files": found.files}
+
+
+def model(name: str, text: str) -> dict[str, Any]:
+    """Nothing, once it has been read.
+
+    Raises:
+        BadInputError: it is no model.
+    """
+    where = f"{name}.toml"
+    model_from_dict(parse_toml(text, where), where, text)
+    return {}
+
+
+def controller(name: str, text: str) -> dict[str, Any]:
+    """Nothing, once it has been read.
+
+    Raises:
+        BadInputError: it is no controller.
+    """
+    controller_from_toml(text, f"{name}.toml")
+    return {}

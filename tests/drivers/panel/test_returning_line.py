@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from drivers.panel._returning_line import ReturningLine
+from drivers.panel._panel import ReturningLine
 from hil.core.errors import BenchError
 from tests.clocks import SteppedClock
 

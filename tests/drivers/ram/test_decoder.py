@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from drivers.ram._decoder import DaqDecoder
-from drivers.ram._packing import packed
+from drivers.ram._decoder import DaqDecoder, packed
 from hil.core.can.frames import FRAME, FrameBlock
 from hil.core.can.symbols import Symbol
 from hil.core.can.xcp import TimeStamps

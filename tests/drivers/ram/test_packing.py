@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drivers.ram._packing import bits_of, packed
+from drivers.ram._decoder import bits_of, packed
 from hil.core.can.frames import most_frame_bits
 from hil.core.can.symbols import Symbol
 from hil.core.errors import BenchError

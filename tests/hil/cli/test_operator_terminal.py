@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from hil.cli.terminal import StandardTerminal, operators_terminal
+from hil.cli.streams import StandardTerminal, operators_terminal
 from hil.core.recording import read_recording
 from tests.benches_for_tests import SIM
 from tests.hil.cli.test_commands import HIL

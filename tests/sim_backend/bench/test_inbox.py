@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim_backend.bench._inbox import Inbox
+from sim_backend.bench._outgoing import Inbox
 
 REQUEST = ("rmcu", 0x100)
 FRAMES = st.lists(

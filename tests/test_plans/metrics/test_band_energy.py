@@ -8,7 +8,7 @@ from scipy import signal
 
 from test_plans import Array
 from test_plans.metrics import BandEnergy, BandEnergyMotorSpeed, NoValueError
-from test_plans.metrics._periodogram import periodogram
+from test_plans.metrics._low_pass import periodogram
 from tests.test_plans.signals import STEP, recording_of, time_axis
 
 METRIC = BandEnergyMotorSpeed()

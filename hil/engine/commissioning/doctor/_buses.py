@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from drivers import TICK_S, Finding, SampleAssembler, Samples, SampleSource, Stream, Wire
-from drivers.linux_links import Link, link_of
+from drivers.bus_health import Link, link_of
 from hil.core.errors import BenchError
 from hil.core.result import StreamClock
 from hil.engine.bench.bench_tables import Bus

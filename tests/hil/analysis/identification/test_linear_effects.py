@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from hil.analysis.control_design import design_plant
 from hil.analysis.identification import transfer_functions_of
-from hil.analysis.identification._linear_effects import linear_effects
+from hil.analysis.identification._chain import linear_effects
 from hil.core.model import EffectUse, Model, load_model
 from hil.plant import linear_system
 from tests.benches_for_tests import SIM

@@ -37,7 +37,7 @@ def test_every_format_gives_back_what_was_written(ending, tmp_path):
         np.testing.assert_allclose(again[name], values, rtol=1e-8, atol=1e-12)
 
 
-@pytest.mark.parametrize(("ending", "stretch"), [("csv", "_csv_writer._ROWS_AT_ONCE"), ("mf4", "_mdf.BLOCK")])
+@pytest.mark.parametrize(("ending", "stretch"), [("csv", "_csv_block._ROWS_AT_ONCE"), ("mf4", "mdf.BLOCK")])
 def test_what_is_written_in_stretches_is_whole(ending, stretch, tmp_path, monkeypatch):
     monkeypatch.setattr(f"hil.core.recording.{stretch}", 64)  # 200 samples: three whole ones and a part
     write_recording(recording(), tmp_path / f"r.{ending}")

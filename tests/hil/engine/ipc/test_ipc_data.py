@@ -10,7 +10,7 @@ from hil.core.errors import BadInputError, BenchError
 from hil.core.model import load_model
 from hil.core.result import RunResult
 from hil.engine import RunOutcome, RunRequest, load_bench
-from hil.engine.ipc.ipc import asked_of, ended_of, outcome_of, request_of
+from hil.engine.ipc.ipc_data import asked_of, ended_of, outcome_of, request_of
 from hil.engine.ipc.ipc_messages import RunAsked, from_line, to_line
 from test_plans import Choices, load_plan
 from tests.benches_for_tests import SIM, plan

@@ -19,7 +19,7 @@ from hil.core.recording import read_recording, run_of
 from hil.engine import RunRequest
 from hil.engine.bench.bench_file import bench_from_dict
 from hil.engine.bench.bench_tables import BenchFile
-from hil.engine.ipc.ipc import asked_of
+from hil.engine.ipc.ipc_data import asked_of
 from hil.engine.ipc.ipc_messages import (
     Concluded,
     Ended,

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from drivers.linux_links import Link
+from drivers.bus_health import Link
 from hil.engine.bench.bench_tables import Bus
 from hil.engine.commissioning.doctor._buses import findings_of_bus, judged
 from hil.engine.commissioning.doctor.examination import BusFacts
