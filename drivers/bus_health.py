@@ -1,8 +1,6 @@
-"""Error frames as SocketCAN has them (Linux, include/uapi/linux/can/error.h): made, and put into words.
+"""What is known of a bus while it is used: adapter states, SocketCAN's error frames, Linux' counters.
 
-What Linux knows of a CAN interface: state, error counters and the bit rate that `ip link` has set.
-
-What an adapter says of its bus while it is used: bus-off, error-passive, full queues.
+Error frames are as in Linux, include/uapi/linux/can/error.h.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""What a look at a device tells: what it says of itself, what is wrong with it, and what to do.
-
-What every device of a bench can do, whatever its make and its wire, and the two that turn the axle.
-"""
+"""What every device of a bench can do, whatever its make and wire, and what a look at it finds."""
 
 from __future__ import annotations
 

@@ -1,9 +1,4 @@
-"""What a block of frames says of single ones: own echoes, and the newest of each identifier.
-
-The newest frames of a block with certain identifiers: what their senders are like now.
-
-Own frames that come back from the bus: when each request was really seen there.
-"""
+"""What a block of frames says of single ones: own echoes, and the newest of each identifier."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""The amplitude spectrum that reports draw: a sine of amplitude A on a frequency line reads A.
+"""Plain figures of channels over time and as amplitude spectra: sweeps, whole runs, foreign recordings.
 
-Plain figures of channels: over time and as spectra, for sweeps, for whole runs and foreign recordings.
+A sine of amplitude A on a frequency line reads A.
 """
 
 from __future__ import annotations

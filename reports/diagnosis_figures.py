@@ -1,6 +1,4 @@
-"""Figures of a diagnosis: one recording, measured and simulated before and after, in time and frequency.
-
-One picture of a diagnosis for who does not read tables: how far simulation and measurement are apart.
+"""Figures of a diagnosis: measured and simulated before and after, over time and frequency, and gaps as bars.
 
 Two bars a channel, in per cent of the signal: the model as it came, and the one given back. A line across
 them says what noise alone makes.

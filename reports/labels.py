@@ -1,10 +1,7 @@
-"""Names, numbers and units as people read them in figures and tables.
+"""Names, numbers and units as people read them, and symbols as HTML and as Matplotlib's mathtext.
 
-Names of channels in figures, and their symbols as HTML and as Matplotlib's mathtext.
-
-A label's text may come from a user's file, so both forms escape it.
-
-Numbers and units as people read them: significant digits, thin spaces, a true minus sign.
+Numbers have significant digits, thin spaces and a true minus sign. A label's text may come from a user's
+file, so both forms escape it.
 """
 
 from __future__ import annotations

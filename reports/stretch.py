@@ -1,10 +1,7 @@
 """A stretch of one channel, ready to be drawn or transformed: cut, decimated, enveloped.
 
-Fewer points of a line that look the same: the lowest and highest sample of each stretch are kept.
-
-Curves that swing so fast that the one drawn last covers the others: what is drawn are their envelopes.
-
-A stretch of one channel, ready to be drawn or transformed.
+Decimation keeps the lowest and highest sample of each piece. Curves that swing so fast that the one drawn
+last covers the others are drawn as envelopes.
 """
 
 from __future__ import annotations

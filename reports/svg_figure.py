@@ -1,7 +1,4 @@
-"""Matplotlib's canvas in the house style for paper, without its global state, and the SVG from it.
-
-A figure on paper: SVG by Matplotlib, without its global state.
-"""
+"""A figure on paper: SVG by Matplotlib in the house style, without its global state."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""All that is wrong with a plan, reported at once.
-
-From a part of a YAML document to a checked object, with messages that name line and key.
-"""
+"""From a part of a YAML document to a checked object; every mistake is reported, with line and key."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""From a recording to the criteria's results.
-
-A recorded run judged once more, by the plan that lies in its recording.
-"""
+"""From a recording to the criteria's results; also once more, by the plan that lies in the recording."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Built-in files by their names, beside files by their paths.
-
-From YAML to a plan, with messages that name file, line and key.
-"""
+"""From YAML to a plan, by path or name, with messages that name file, line and key."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""A serial line that may go away and come back, as an adapter does that is plugged in again.
+"""The RC-S's panel: remote, alarms, vehicle and road load, each written and read back.
 
-The RC-S's panel: remote, alarms, vehicle and road load, each written and read back.
+Its serial line may go away and come back, as an adapter does that is plugged in again.
 """
 
 from __future__ import annotations

@@ -1,8 +1,6 @@
-"""How symbols are laid into ODTs: the packets in which a slave sends what it measured at one moment.
+"""From packets of measured data to samples: whole ones only, with the counts that their time stamps give.
 
-Samples that came and wait to be handed out, and how many of them never came.
-
-From packets of measured data to samples: whole ones only, with the counts that their time stamps give.
+Symbols are laid into ODTs, the packets of one moment. How many samples never came is counted.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""A bench of the agent: what it does now, and what is asked of it.
-
-Predicts plans for the service, where the bench is.
-"""
+"""A bench of the agent: what it does now, what is asked of it, and what is predicted there."""
 
 from __future__ import annotations
 

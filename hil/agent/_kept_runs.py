@@ -1,6 +1,6 @@
-"""Runs on the agent's disk: written down before they are started, kept until the service has them.
+"""Runs on the agent's disk: written down before they are started, kept until the service has them whole.
 
-Brings to the service what runs leave: the recording as it grows, everything once they have ended.
+The recording is brought there as it grows, everything else once the run has ended.
 """
 
 from __future__ import annotations

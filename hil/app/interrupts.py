@@ -1,8 +1,6 @@
-"""How a use case ends: signals, and errors with what, where and what to do.
+"""How a use case ends: by signals, or by an error with what, where and what to do.
 
-What ended a use case, as one error with what, where and what to do.
-
-Signals that end a command: Ctrl-C, a termination, a closed terminal are one and the same to it.
+Ctrl-C, a termination and a closed terminal are one and the same to a command.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""What was understood of recordings that other tools made: their columns, and what was assumed of them.
-
-JSON that commands write, and `result.json`: the result with the files that exist and what proves them.
-"""
+"""JSON that commands write: results with their files and what proves them, and how columns were read."""
 
 from __future__ import annotations
 

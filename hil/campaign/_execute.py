@@ -1,7 +1,4 @@
-"""Which simulations are done together, and who does them.
-
-A campaign executed: what is missing is handed out, what comes back is put on disk.
-"""
+"""A campaign executed: what is missing is handed out in batches, what comes back is put on disk."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""The table of a campaign on disk: part files that appear whole, each with a fixed run of simulations.
+"""The table of a campaign on disk: part files that appear whole, read while it grows, and joined at its end.
 
-The table of a campaign as others read it: while it grows, and as one file.
+Each part has a fixed run of simulations.
 """
 
 from __future__ import annotations

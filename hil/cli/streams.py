@@ -1,8 +1,7 @@
 """Standard streams that cannot surprise a command, and the operator's terminal.
 
-Standard streams that cannot surprise a command: closed, full, cut off by their reader, or ASCII only.
-
-The operator's terminal: shown texts, and lines that were typed, without ever waiting for them.
+Streams may be closed, full, cut off by their reader, or ASCII only. Lines that the operator types are
+read without ever waiting for them.
 """
 
 from __future__ import annotations

@@ -1,9 +1,4 @@
-"""Channels of recordings, and numbers that all packages share.
-
-Numbers that the whole house shares by agreement.
-
-Names, units and meanings of the channels in a recording (docs/reference/recordings.md).
-"""
+"""Names, units and meanings of channels (docs/reference/recordings.md), and numbers all packages share."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """Work beside a service: processes that it starts, and daemon threads for what waits for a network.
 
-Processes that the service begins: they find the same packages, and a terminal's Ctrl-C is not for them.
-
-Runs what may wait for a network in a daemon thread: the end of the process does not wait for it.
+Processes find the same packages, and a terminal's Ctrl-C is not for them. The end of the process does not
+wait for a thread.
 """
 
 from __future__ import annotations

@@ -1,9 +1,4 @@
-"""Where a service or an agent keeps its data: its folder, and the files of runs.
-
-The folder of a service, or of an agent: one keeps its data there, under a name made once.
-
-Files of a run in a folder of its own, and those that a plan loads.
-"""
+"""Where a service or an agent keeps its data: its folder, files of runs, files that plans load."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Whether the audit log is as it was written: read when a service begins and ends, and to verify.
+"""The audit log: whether it is as it was written, and rows that no one waits for.
 
-Rows of the audit log that no one waits for: a stop is answered before it is written down.
+It is read when a service begins and ends, and to verify. A stop is answered before it is written down.
 """
 
 from __future__ import annotations

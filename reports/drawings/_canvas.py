@@ -1,7 +1,4 @@
-"""A canvas in the house style: units on every axis, the comfort band and the resonance marked.
-
-A drawing as a figure of a report.
-"""
+"""A canvas in the house style: units on every axis, comfort band and resonance marked."""
 
 from __future__ import annotations
 

@@ -1,9 +1,4 @@
-"""Many candidates or simulations at once: distributions of values, and what can be traded for what.
-
-How often which value came: one criterion over many simulations, beside its limits.
-
-What can be traded for what: figures of merit of many candidates, those that none beats, named ones.
-"""
+"""Many simulations or candidates at once: how often which value came, and what can be traded for what."""
 
 from __future__ import annotations
 

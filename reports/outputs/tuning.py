@@ -1,7 +1,4 @@
-"""What `hil tune --on-bench` says of its runs: JSON, and the text for people.
-
-What `hil tune` writes: the controller, `tune.json`, figures and the text for people.
-"""
+"""What `hil tune` writes: controller, `tune.json`, figures, and the text for people."""
 
 from __future__ import annotations
 

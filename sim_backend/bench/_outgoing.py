@@ -1,9 +1,4 @@
-"""Frames of the simulated bench that wait: what hosts have sent, and what nodes send.
-
-What hosts have sent, until the sample before which a node takes it.
-
-What the bench's nodes send, in answer or every sample, kept until a host takes it.
-"""
+"""Frames of the simulated bench that wait: those of hosts until their sample, those of nodes until taken."""
 
 from __future__ import annotations
 

@@ -1,11 +1,4 @@
-"""What a bench file says about its simulation, and what can be broken on it.
-
-What can be broken on a simulated bench, to see that the rest stays safe.
-
-Somebody between the nodes of a simulated bench and its hosts, who also reads the plant's own log.
-
-What a bench file says about its simulation.
-"""
+"""What a bench file says about its simulation, and what tests can break on it."""
 
 from __future__ import annotations
 

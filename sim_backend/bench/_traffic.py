@@ -1,7 +1,4 @@
-"""The cyclic frames of a bus, made for many samples at once, with the times they take on the wire.
-
-Packets in which the emulated RMCU sends what a master has it measure, for many samples at once.
-"""
+"""Cyclic frames and packets of measured data, made for many samples at once, with times on the wire."""
 
 from __future__ import annotations
 

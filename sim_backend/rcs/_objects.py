@@ -1,6 +1,6 @@
-"""The CiA 402 state machine (IEC 61800-7-201, FSA of the drive), without its transitional states.
+"""The objects of a node as an SDO server gives and takes them, and the CiA 402 state machine.
 
-The objects of a node as an SDO server gives and takes them, with the abort codes of CiA 301, table 22.
+Abort codes are those of CiA 301, table 22; states those of IEC 61800-7-201, without transitional ones.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""Values that repeat bit for bit although their own noise or a neighbour moves: no one measures there.
+"""Whether the channels of a segment were measured: one sentence for each that was not.
+
+Values that repeat bit for bit although their own noise or a neighbour moves: no one measures there.
 
 The last digits of a measured value change from sample to sample, unless its resolution is coarser than its
 noise and nothing moves. Two things show that a live channel could not have stood still:
@@ -10,8 +12,6 @@ noise and nothing moves. Two things show that a live channel could not have stoo
 - *a witness*: the neighbour that moves it (the motor's torque for T_s, the wheel for the vehicle) has moved
   by a tenth of its own largest magnitude meanwhile. A shaft torque of exactly zero is left out: it may lie in
   the backlash.
-
-Whether the channels of a segment were measured: one sentence for each that was not.
 """
 
 from __future__ import annotations

@@ -1,10 +1,6 @@
-"""Filters and spectra of metrics.
+"""Filters and spectra of metrics: a Butterworth low-pass without delay, and power density of a window.
 
-A low-pass filter that delays nothing: Butterworth of second order, forward and backward.
-
-scipy.signal has it, and takes longer to import than a plan takes to be predicted and judged.
-
-Power spectral density of a whole window and what of it lies in a band; scipy.signal is slow to import.
+scipy.signal has both, and takes longer to import than a plan takes to be predicted and judged.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""Cutting a channel to a stretch of time, and refusing what would give a wrong number.
-
-What a response is compared with: the values before and after the step that was asked for.
-"""
+"""Cutting a channel to a stretch of time, refusing what would mislead, and values around a step."""
 
 from __future__ import annotations
 

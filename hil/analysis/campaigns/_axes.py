@@ -1,8 +1,6 @@
-"""What a campaign varies: values, and which simulation has which.
+"""What a campaign varies: values as lists or ranges, and which simulation has which.
 
-Values that a campaign file gives what it varies, as lists or as ranges, and how many there may be.
-
-Which simulation has which values: one number for each, the same whoever carries it out and when.
+Each combination has one number, the same whoever simulates it and when.
 """
 
 from __future__ import annotations

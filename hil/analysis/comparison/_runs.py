@@ -1,9 +1,4 @@
-"""Which runs can be compared, and what was not the same in them.
-
-Which runs can be compared: those that executed the same plan.
-
-What was not the same in two runs of one plan: controllers, model, bench, the plan's own values.
-"""
+"""Which runs can be compared, those of one plan, and which of their inputs differ."""
 
 from __future__ import annotations
 

@@ -1,8 +1,6 @@
-"""The controller's parts as the paper writes them, and as the RMCU computes them.
+"""The controller's parts as the paper writes them in continuous time, and by Tustin's rule as in the RMCU.
 
-The controller's parts as the paper writes them, in continuous time; equation numbers are the paper's.
-
-The RMCU's arithmetic: each block by Tustin's rule at the controller's sample time.
+Equation numbers are the paper's.
 """
 
 from __future__ import annotations

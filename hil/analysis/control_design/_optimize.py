@@ -1,6 +1,7 @@
 """Search of lead and pole for the lowest sensitivity in 8-20 Hz, under margin limits, for all plants.
 
-Phase at the resonance against the sensitivity peak, over lead angle and lead frequency (Fig. 10).
+The trade-off (Fig. 10) is phase at the resonance against the sensitivity peak, over lead angle and
+frequency.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""The plant as the RMCU may use it: its filters invert numerators, so those must be invertible.
+"""The plant as the RMCU may use it, and plants that the data allow, for designs that hold for all.
 
-Plants that the data allow, for designs that must hold for all of them.
+The RMCU's filters invert numerators, so those must be invertible.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""One experiment: a stretch of a recording on even time stamps, ready for a Fourier transform.
+"""One experiment: a stretch of a recording on even time stamps, and its Fourier lines.
 
-Fourier lines of an experiment, scaled so that experiments of any length and rate can be put together.
+Lines are scaled so that experiments of any length and rate can be put together.
 """
 
 from __future__ import annotations

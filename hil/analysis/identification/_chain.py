@@ -1,6 +1,6 @@
-"""Transfer functions of a chain together with those of its effects that act linearly.
+"""Driveline chains in closed form: rotor, gear, shafts, what hangs on them, and effects that act linearly.
 
-Driveline chains in closed form: rotor, gear, shafts, and what hangs on them.
+Driveline chains in closed form: rotor, gear, shafts, what hangs on them, and effects that act linearly.
 
 Equations of motion, wheel side except the rotor (N gear ratio, T the torque after the dead time):
 

@@ -1,10 +1,10 @@
-"""What runs have shown of margins beside what was predicted: output space mapping.
+"""The best step within a trust region: uphill on margins as the runs so far have corrected them.
+
+What runs have shown of margins beside what was predicted: output space mapping.
 
 J. W. Bandler et al., "Space mapping: the state of the art", IEEE Trans. Microwave Theory Tech. 52 (2004)
 337: a coarse model, here the predicted run, is corrected so that it agrees with the fine one, here the bench,
 where that was tried.
-
-The best step within a trust region: uphill on margins as the runs so far have corrected them.
 """
 
 from __future__ import annotations

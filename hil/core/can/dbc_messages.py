@@ -1,10 +1,12 @@
-"""Identifiers of SAE J1939-21: which frames are of a message that a DBC describes for any source address.
+"""Every message of DBC files that a recording has a place for, decoded in whole columns, SAE J1939 included.
+
+Every message of DBC files that a recording has a place for, decoded in whole columns, SAE J1939 included.
+
+Identifiers of SAE J1939-21: which frames are of a message that a DBC describes for any source address.
 
 An identifier of 29 bits is priority (3), data page (2), PDU format (8), PDU specific (8), source address (8).
 Format, page and, from format 240 on, the specific part are the parameter group number; below 240 that part is
 a destination. A DBC of J1939 writes the null address 254 where every source is meant: no device has it.
-
-Every message of DBC files that a recording has a place for, decoded in whole columns.
 
 For logs of any bus: `hil.core.can.dbc` reads the few messages that a bench needs, and refuses contradictions.
 """

@@ -1,8 +1,7 @@
-"""CAN frames as numpy arrays, and their checksum.
+"""CAN frames as one numpy array a block, and their checksum: CRC-8 SAE J1850 of RMCU frames.
 
-A block of CAN frames as one numpy array: nothing is done per frame that can be done per block.
-
-CRC-8 SAE J1850 of RMCU frames: over the identifier's low byte and the first seven payload bytes.
+Nothing is done per frame that can be done per block. The checksum covers the identifier's low byte and
+the first seven payload bytes.
 """
 
 from __future__ import annotations

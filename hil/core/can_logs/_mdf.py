@@ -1,9 +1,4 @@
-"""Frames kept in recordings: ASAM MDF bus logging, and the project's own.
-
-ASAM MDF bus logging, read by asammdf in whole columns.
-
-Raw frames of a recording of the project's own.
-"""
+"""Frames kept in recordings: ASAM MDF bus logging, read in whole columns, and the project's own."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """All that is wrong with a file, reported at once: each mistake with its line, key and remedy.
 
-What is wrong with a table of a TOML file: pydantic's errors by key, value and what would be right.
+Tables of a TOML file are checked by pydantic; its errors get key, value and what would be right.
 """
 
 from __future__ import annotations

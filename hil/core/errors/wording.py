@@ -1,8 +1,10 @@
-"""Shares and multiples as people read them: digits that mean something (docs/reference/numbers.md).
+"""Text of messages: what may be shown, what was meant, and numbers with digits that mean something.
+
+Text of messages: what may be shown, what was meant, and numbers with digits that mean something.
+
+Shares and multiples as people read them: digits that mean something (docs/reference/numbers.md).
 
 Plain text, for terminals and sentences; `reports.labels` sets the same with its own spaces and signs.
-
-Text of messages: what may be shown, what was meant, several findings at once.
 """
 
 from __future__ import annotations

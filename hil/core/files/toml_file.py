@@ -1,7 +1,4 @@
-"""Which of the bench's files a table is, by its keys, and the version of its format.
-
-TOML files as people write them: what is wrong with one is reported, and none is too large.
-"""
+"""TOML files as people write them: bounded, every mistake reported, their kind known by their keys."""
 
 from __future__ import annotations
 

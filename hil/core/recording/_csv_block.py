@@ -1,8 +1,6 @@
-"""Tables of text block by block by Arrow: lines to columns of numbers, and back.
+"""Tables of text block by block by Arrow: lines to columns of numbers, and columns to lines.
 
-A block of whole lines of a text as columns of numbers: at once by Arrow, or cell by cell for messages.
-
-Writes CSV block by block: decimal numbers in every row, nine significant digits.
+Cells are parsed one by one only for messages. What is written has nine significant digits.
 """
 
 from __future__ import annotations

@@ -1,11 +1,4 @@
-"""How a table of text is laid out: encoding, separators, decimal comma, units, and rows below the names.
-
-Text of a CSV as UTF-8, whatever Unicode it came in.
-
-How the text of another tool is laid out: separators, decimal comma, units.
-
-What stands between the names of a table of text and its samples: units, types, descriptions.
-"""
+"""How a table of text is laid out: Unicode, separators, decimal comma, units, rows below its names."""
 
 from __future__ import annotations
 

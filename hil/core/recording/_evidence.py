@@ -1,8 +1,6 @@
-"""What a recording carries beside its samples: its run's result, and everything else as one JSON text.
+"""What a recording carries beside its samples: the result of its run, and one JSON text that exports keep.
 
-What a recording says of the run that made it: its result, or as much of it as a cut file still tells.
-
-What a recording carries beside its samples, as one JSON text: exports to other formats keep it.
+Of a file that was cut off the result is as much as the file still says.
 """
 
 from __future__ import annotations

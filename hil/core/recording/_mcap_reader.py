@@ -1,6 +1,6 @@
-"""Reads the native recording back: what is whole of it, and what is not.
+"""Reads an MCAP file back: the native recording, or one whose channels have the names of another tool.
 
-An MCAP file whose channels have the names of another tool, as of a log that was decoded by its DBC.
+Of a native recording it is known what is whole of it, and what is not.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""Channels that stay in their file: what is asked for is read from it, and nothing else is held.
-
-Rows of samples of an MCAP file: held as long as they are few, then found again in the file.
-"""
+"""Channels that stay in their file, and rows of MCAP samples: held while few, else found again there."""
 
 from __future__ import annotations
 

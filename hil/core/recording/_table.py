@@ -1,7 +1,4 @@
-"""A recording in memory: channels over time, and what was stored with them.
-
-The wheel's angle since a recording began, at which the axle stood still.
-"""
+"""A recording in memory: channels over time, what was stored with them, and how far its wheel turned."""
 
 from __future__ import annotations
 

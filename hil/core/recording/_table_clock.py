@@ -1,8 +1,6 @@
-"""When samples of another tool's table were taken: stamps, several rates, numbers that stand for no value.
+"""Times and rates of another tool's table: counters that begin again, rounded times, slower columns.
 
-Tables of several rates, whose slower columns have blanks between; and numbers that stand for no value.
-
-What the stamps of another tool's table are: a counter that begins again, or times that were rounded.
+Also numbers that stand for no value.
 """
 
 from __future__ import annotations

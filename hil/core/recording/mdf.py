@@ -1,9 +1,4 @@
-"""ASAM MDF4 by asammdf: files opened, read and written.
-
-Opens MDF files with asammdf.
-
-MDF4 with asammdf: channels in groups, each group with time stamps of its own.
-"""
+"""ASAM MDF4 with asammdf: channels in groups, each group with time stamps of its own."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
-"""Time: as an argument of a bench, and as the wall clock that a loop keeps up with.
+"""Time as an argument: a wall clock for a bench, a computed one for a simulation; and a loop that keeps up.
 
-Time as an argument: a bench has a wall clock, a simulation one in which waiting means computing.
-
-A loop that keeps up with the wall clock: no long pauses for garbage, and ahead of others where allowed.
+In a simulation waiting means computing. A loop in real time has no long pauses for garbage, and goes
+ahead of others where that is allowed.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""The channels of a bench against what its file and a plan want of them.
+"""The channels of a bench against what its file and a plan want of them, and sensors out of calibration.
 
-Sensors whose calibration has run out: refused, unless somebody answers by name and with a reason.
+An expired calibration is refused unless somebody answers by name and with a reason.
 """
 
 from __future__ import annotations

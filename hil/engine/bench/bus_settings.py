@@ -1,9 +1,11 @@
-"""Which bus a table of a bench file means: the adapter's own port, whatever else the table says of it.
+"""A bus's table in the bench file: which bus it means, what opens it, and what an adapter does not take.
+
+A bus's table in the bench file: which bus it means, what opens it, and what an adapter does not take.
+
+Which bus a table of a bench file means: the adapter's own port, whatever else the table says of it.
 
 Two files that name one port are one bench, under any name, on any baud rate and with any option. Lock, latch,
 doctor, service and agents all ask here.
-
-A bus's table in the bench file as what opens it; and what of it an adapter does not take.
 """
 
 from __future__ import annotations

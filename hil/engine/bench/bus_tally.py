@@ -1,7 +1,4 @@
-"""Counts what is heard on a bus: frames by identifier, errors, and how busy it is.
-
-How busy each bus of a run is, on average and in its busiest tenth of a second.
-"""
+"""Counts what is heard on a bus: frames by identifier, errors, and how busy it is on average and at worst."""
 
 from __future__ import annotations
 

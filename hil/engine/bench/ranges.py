@@ -1,6 +1,6 @@
-"""The bench file's tables of limits and interlocks: ranges of channels, and what is done when one is left.
+"""Every range that a bench file states, in one form: magnitudes, limits of channels, interlocks.
 
-Every range that a bench file states, in one form: magnitudes, limits of channels, interlocks.
+The tables say what is done when a range is left.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""What somebody consents to before a series of runs: largest values of channels, how many runs, how long.
+"""What a plan will do to the axle: peaks beside limits, criteria; and the envelope of a consent.
 
-Below the consent lie the bench's own limits, which it cannot raise; within a run it is watched like them.
-
-What a plan will do to the axle: its peaks beside the bench's limits, its criteria judged beforehand.
+An envelope is what somebody consents to before a series of runs: largest values of channels, how many
+runs, how long. The bench's own limits lie below it and cannot be raised; within a run it is watched like
+them.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""Whether a process is about to be no more, before its pipes say so.
+"""The process that holds the hardware: one run, requested and reported over pipes.
+
+Whether a process is about to be no more, before its pipes say so.
 
 They close once the system has taken its memory apart: 10 to 80 ms for the 200 MB of a command on a busy
 machine, in which a bench would be driven for no one.
-
-The process that holds the hardware: one run, requested and reported over pipes.
 """
 
 from __future__ import annotations

@@ -1,8 +1,6 @@
 """What is left when the process that held the hardware is lost: its recording, and whether the bench is safe.
 
-The recording of a run whose process was lost, and a result made from it.
-
-Checks over new connections whether a bench is safe whose process was lost; sends nothing.
+Safety is checked over new connections; nothing is sent.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""What devices say that they are, against what the bench file expects.
+"""From an open bench to one that is armed: who is there, what they are, what they read at rest.
 
-From an open bench to one that is armed: who is there, what they are, what they read at rest.
+What devices say that they are is compared with what the bench file expects.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""Room on the disk for a recording and its reports, looked at before a bench is touched.
-
-What is looked at before a bench is touched: dates, controllers, requests against limits, disk.
-"""
+"""What is looked at before a bench is touched: dates, controllers, requests against limits, the disk."""
 
 from __future__ import annotations
 

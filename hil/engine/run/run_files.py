@@ -1,7 +1,4 @@
-"""What a recording says about the files that it holds.
-
-What a run stores in its recording beside what was measured.
-"""
+"""What a run stores in its recording beside what was measured."""
 
 from __future__ import annotations
 

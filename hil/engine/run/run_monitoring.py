@@ -1,7 +1,4 @@
-"""What stopped a run: kept once, and reported in its recording.
-
-Monitors a bench during a run: samples, limits, silence, devices, the operator.
-"""
+"""Monitors a bench during a run (samples, limits, silence, devices, operator), and keeps what stopped it."""
 
 from __future__ import annotations
 

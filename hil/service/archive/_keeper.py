@@ -1,6 +1,6 @@
-"""What is done again and again, and less often while a network does not answer.
+"""Brings files of runs that are over to the archive, and back when they are asked for.
 
-Brings files of runs that are over to the archive, and back when they are asked for.
+What is done again and again is done less often while a network does not answer.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""The catalogue of models or controllers of a service: shipped ones and uploads.
-
-The catalogues of models and controllers, and the API data of their entries.
-"""
+"""The catalogues of models and controllers: shipped ones and uploads, and the API data of their entries."""
 
 from __future__ import annotations
 

@@ -1,8 +1,6 @@
-"""A job on the disk: its folder and number, and the process that does it.
+"""Jobs on the disk: a folder with a file for each number, and the process that does the work.
 
-A use case in a process of its own, which the next service finds if this one is killed.
-
-Jobs by number: each has a folder with a file that describes it.
+The next service finds that process if this one is killed.
 """
 
 from __future__ import annotations

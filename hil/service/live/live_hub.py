@@ -1,6 +1,6 @@
-"""Encodes what many viewers get once, and keeps it for the next.
+"""Live data for the viewers of each bench: the run under way or the last one, and its judgement.
 
-Live data for the viewers of each bench: the run under way or the last one, and its judgement.
+What many viewers get is encoded once.
 """
 
 from __future__ import annotations

@@ -1,9 +1,4 @@
-"""Requests for a stop as they come over the network, and their answers, in one loop that never waits.
-
-A request for a stop as it comes over the network, and the answer to it.
-
-Connections of those who want a stop: read, answered and closed from one loop that never waits for any.
-"""
+"""Requests for a stop as they come over the network, and answers, in one loop that never waits."""
 
 from __future__ import annotations
 

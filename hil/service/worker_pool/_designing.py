@@ -1,9 +1,4 @@
-"""Controllers drafted and designed, and identifications to be drawn.
-
-Controllers drafted and designed for a model.
-
-What an identification found, to be drawn: measured and fitted responses, parameters with intervals.
-"""
+"""Controllers drafted and designed for a model, and identifications to be drawn with their intervals."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""What a plan says, and whether a service may take it; also for a process that reads what is given first.
-
-Reads what people give before the service takes it: whatever it is, it holds no one up here.
-"""
+"""What a given file says, and whether a service may take it: read in another process."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""A bus as it is heard: load, who sends, errors, and what the adapter says of itself.
-
-How the devices' clocks go against this machine's, from what they send by themselves.
-"""
+"""A bus as it is heard: load, senders, errors, what its adapter says, and how the devices' clocks go."""
 
 from __future__ import annotations
 

@@ -1,9 +1,4 @@
-"""Calibration dates of the bench file against today.
-
-Emergency stops that keep the bench from being armed.
-
-What the doctor found: data, for people and programs.
-"""
+"""What the doctor found, as data for people and programs: devices, calibration dates, emergency stops."""
 
 from __future__ import annotations
 
