@@ -172,8 +172,8 @@ def _confirmed(found: Confirmation | None) -> tuple[Part, ...]:
     words = "as predicted" if found.agrees else "not as predicted: see the diagnosis"
     allowed = labels.share(found.allowed)
     text = (
-        f"The plan run with the tuned controller, over the wire. Allowed: {allowed} of a limit, of the "
-        f"larger value where there is none; {words}."
+        f"The first run with the tuned controller. Allowed: {allowed} of a limit, of the larger value where "
+        f"there is none; {words}."
     )
     head = ("criterion", "predicted", "measured", "difference", "unit", "of the limit", "run")
     return (Part("confirmed", "Predicted and measured", text, (Table(head, rows, 1, 6),)),)

@@ -165,9 +165,9 @@ class TuneRequest(_Writing):
         starts: further starting points of the search.
         at_most: minutes after which the search ends with what it has.
         processes: predictions at once; None for one a processor.
-        then_run: run the plan with the tuned controller, and diagnose a run that differs by more than
-            `differ` per cent of a criterion's limit.
         refine: refine on the bench of `search`, with at most `runs` runs within `envelope`.
+        differ: deviation of the first run from its prediction above which it is diagnosed, per cent of a
+            criterion's limit.
         confirm: who consents to these runs; '' if the person at the terminal is asked.
     """
 
@@ -175,9 +175,8 @@ class TuneRequest(_Writing):
     starts: int = 6
     at_most: float | None = None
     processes: int | None = None
-    then_run: bool = False
-    differ: float = 5.0
     refine: bool = False
+    differ: float = 5.0
     runs: int | None = None
     envelope: Mapping[str, float] = field(default_factory=dict)
     confirm: str = ""

@@ -65,6 +65,8 @@ def refinement_verdict(found: Refinement) -> str:
     """What came of it, in a sentence or two."""
     if found.best is None:
         return f"Nothing was measured: {found.ended}."
+    if len(found.runs) == 1:
+        return f"One run: worst margin measured {share(found.best.worst)}. Ended: {found.ended}."
     gained = found.best.worst - found.runs[0].worst
     return (
         f"Run {found.best.number} of {len(found.runs)} is the best: worst margin measured "

@@ -17,7 +17,7 @@ from hil.app.result_file import RESULT
 from hil.app.results_folder import results_in
 from hil.app.run import RunSettings
 from hil.app.tuning.bench_runs import FOLDER, Allowed, StageOutcome, WireBench
-from hil.app.tuning.refinement import Refined, refine_on
+from hil.app.tuning.refinement import Refined, compare_first_run, refine_on
 from hil.app.tuning.search_files import NAMES as TUNING_NAMES
 from hil.app.tuning.search_files import SUMMARY as TUNING_SUMMARY
 from hil.app.tuning.search_files import Search, load_search, write_results
@@ -183,7 +183,8 @@ class Stages:
                 wire, found, budget, settings.processes, settings.runs.feedback, lambda: stop.times > 0
             )
             self._spent_s, self._runs = wire.bench_time_s, self._runs + len(wire.outcomes)
-            write_results(search, found, place.write, refinement=refined)
+            first = compare_first_run(refined, settings.agree, lambda: "")  # the next round diagnoses it
+            write_results(search, found, place.write, refined, first)
         return refined, wire
 
 

@@ -24,8 +24,7 @@ from hil.analysis.tuning import (
 )
 from hil.app.requests import SearchRequest
 from hil.app.result_file import json_file
-from hil.app.tuning.confirmation import Ran, as_json
-from hil.app.tuning.refinement import Refined
+from hil.app.tuning.refinement import FirstRun, Refined
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import did_you_mean
@@ -133,29 +132,27 @@ def write_results(
     search: Search,
     found: Tuning,
     write: Callable[..., None],
-    ran: Ran | None = None,
     refinement: Refined | None = None,
+    first_run: FirstRun | None = None,
 ) -> dict[str, Any]:
-    """Write all results of a search, and of runs that confirmed or refined it; the content of tune.json."""
+    """Write all results of a search and of the runs that refined it; the content of tune.json."""
     shown = []
     for one in found.shown:
         predicted = search.trial.execute(found.trial.draws[0].model, one.controller, 0.0, 0, whole=True)
         shown.append(Shown(one.name, predicted.recording, predicted.segments))
-    if ran is not None:
-        shown.insert(1, ran.shown)
     if refinement is not None and refinement.shown is not None:
         shown.insert(1, refinement.shown)
     best = None if refinement is None else refinement.found.best
     files = output_files(found, search.free_text, best)
     listed = sorted([*files, SUMMARY, HTML, PDF])
     summary = summary_of(found, shown[0].segments, search.facts, listed)
-    if ran is not None:
-        summary["confirmed"] = as_json(ran)
+    if first_run is not None:
+        summary["confirmed"] = first_run.as_json()
     if refinement is not None:
         summary["refined"] = refinement.as_json()
     model = Path(search.facts["model"])
     used = {"model": [model], "bench": [search.bench.source], "controller": [Path(search.facts["start"])]}
-    confirmed = None if ran is None else ran.confirmation
+    confirmed = None if first_run is None else first_run.confirmation
     page = tuning_page(found, shown, search.plan.name, origin_of(used), confirmed)
     if refinement is not None:
         page = refined_page(page, refinement.found, refinement.allowed.in_words())

@@ -12,13 +12,19 @@ from hil.analysis.diagnosis import Diagnosis
 from hil.analysis.tuning import Effort, RefinementBudget, Tuning, tune
 from hil.app.feedback import LOGGED, Feedback
 from hil.app.interrupts import end_at_second
-from hil.app.requests import TuneRequest
+from hil.app.requests import DiagnoseRequest, TuneRequest
 from hil.app.result_file import Outcome
 from hil.app.results_folder import ResultsFolder, results_in
 from hil.app.run import RunSettings
 from hil.app.tuning.bench_runs import FOLDER, Allowed, WireBench, allowed_on
-from hil.app.tuning.confirmation import OnTheWire, Ran, refuse_unasked, run_tuned
-from hil.app.tuning.refinement import Refined, refine_on
+from hil.app.tuning.refinement import (
+    DIAGNOSIS,
+    FirstRun,
+    Refined,
+    compare_first_run,
+    diagnose_first_run,
+    refine_on,
+)
 from hil.app.tuning.search_files import NAMES, SUMMARY, Search, load_search, write_results
 from hil.core.errors import BadInputError, InterruptError
 from hil.engine import StopRequest
@@ -29,21 +35,22 @@ class Tuned:
     """What a tuning found, and what came of it on a bench; `stopped`: somebody ended it early."""
 
     tuning: Tuning
-    ran: Ran | None
     refined: Refined | None
+    first_run: FirstRun | None
     stopped: bool
 
     @property
     def exit_code(self) -> int:
-        """0 if every criterion that hangs on the controller passes where it was last tried."""
-        if self.refined is not None:
-            best = self.refined.found.best
-            return self.refined.exit_code or int(best is None or best.worst < 0)
-        if self.ran is None:
+        """0 if every criterion that hangs on the controller passes where it was last tried.
+
+        On a bench a first run that is the best counts only if it came as predicted.
+        """
+        if self.refined is None:
             return int(self.tuning.chosen.worst.worst < 0)
-        if self.ran.exit_code > 1:
-            return self.ran.exit_code
-        return int(not (self.ran.confirmation.agrees and self.ran.confirmation.passed))
+        best, first = self.refined.found.best, self.first_run
+        deviates = first is not None and not first.confirmation.agrees
+        failed = best is None or best.worst < 0 or (best.number == 1 and deviates)
+        return self.refined.exit_code or int(failed)
 
 
 class Reports:
@@ -53,7 +60,7 @@ class Reports:
         """The search has ended; `drawn` cars were wanted, the model itself among them."""
 
     def diagnosed(self, outcome: Outcome[Diagnosis]) -> None:
-        """A run was not as predicted, and was diagnosed."""
+        """The first run was not as predicted, and was diagnosed."""
 
 
 def tune_controller(
@@ -66,8 +73,6 @@ def tune_controller(
         InterruptError: it was interrupted before anything worth keeping was found.
     """
     search = load_search(request.search)
-    if request.then_run:
-        refuse_unasked(search.plan)
     allowed = _allowed(request, search, feedback) if request.refine else None
     settings = RunSettings(
         None, request.operator, "", "", "", search.inputs, request.overwrite, feedback=feedback
@@ -82,12 +87,10 @@ def tune_controller(
     ) as place:
         stages = _Stages(request, search, settings, place, StopRequest(), reports or Reports())
         found, summary = stages.search_on_model()
-        ran = refined = None
-        if request.then_run and not stages.stop.times:
-            ran, summary = stages.run(found)
+        refined = first = None
         if allowed is not None and not stages.stop.times:
-            refined, summary = stages.refine(found, allowed)
-    return Outcome(Tuned(found, ran, refined, stages.stop.times > 0), summary, place.folder)
+            refined, first, summary = stages.refine(found, allowed)
+    return Outcome(Tuned(found, refined, first, stages.stop.times > 0), summary, place.folder)
 
 
 def _allowed(request: TuneRequest, search: Search, feedback: Feedback) -> Allowed:
@@ -129,23 +132,25 @@ class _Stages:
         self.reports.found(found, self.place.folder, len(search.trial.draws))
         return found, summary
 
-    def run(self, found: Tuning) -> tuple[Ran, dict[str, Any]]:
-        """One run with the controller that was found."""
-        plan, model = self.request.search.plan, self.request.search.model
-        wire = OnTheWire(self.search.bench, self.request.differ / 100, self.settings)
-        ran = run_tuned(found, plan, self.place.folder, wire, model, self.reports.diagnosed)
-        return ran, write_results(self.search, found, self.place.write, ran)
-
-    def refine(self, found: Tuning, allowed: Allowed) -> tuple[Refined, dict[str, Any]]:
-        """Runs that refine it."""
-        search, stop = self.search, self.stop
+    def refine(self, found: Tuning, allowed: Allowed) -> tuple[Refined, FirstRun | None, dict[str, Any]]:
+        """Runs that refine it; the first is diagnosed if it is not as predicted."""
+        search, request, stop, feedback = self.search, self.request, self.stop, self.settings.feedback
         axle, place = search.trial.draws[0].model, self.place.folder / FOLDER
-        wire = WireBench(self.request.search.plan, search.trial, axle, allowed, self.settings, place)
+        wire = WireBench(request.search.plan, search.trial, axle, allowed, self.settings, place)
         with stop.by_signals():
             budget = RefinementBudget(allowed.envelope.runs)
-            feedback, processes = self.settings.feedback, self.request.processes
-            refined = refine_on(wire, found, budget, processes, feedback, lambda: stop.times > 0)
-            return refined, write_results(search, found, self.place.write, refinement=refined)
+            refined = refine_on(wire, found, budget, request.processes, feedback, lambda: stop.times > 0)
+            first = compare_first_run(refined, request.differ / 100, lambda: self._diagnose(wire))
+            return refined, first, write_results(search, found, self.place.write, refined, first)
+
+    def _diagnose(self, wire: WireBench) -> str:
+        wanted = DiagnoseRequest(
+            model=self.request.search.model,
+            recordings=[],
+            out=self.place.folder / DIAGNOSIS,
+            overwrite=self.settings.overwrite,
+        )
+        return diagnose_first_run(wire, wanted, self.settings.feedback, self.reports.diagnosed)
 
 
 def _stopped(stop: StopRequest, at_most_min: float | None) -> Callable[[], bool]:

@@ -9,8 +9,7 @@ from hil.analysis.tuning import Tuning
 from hil.app.interrupts import EXIT_CODE, INTERRUPTS
 from hil.app.requests import SearchRequest, TuneRequest
 from hil.app.result_file import Outcome
-from hil.app.tuning.confirmation import Ran
-from hil.app.tuning.refinement import Refined
+from hil.app.tuning.refinement import FirstRun, Refined
 from hil.app.tuning.tune import Reports, tune_controller
 from hil.cli.commands.diagnose import text_of as diagnosis_in_words
 from hil.cli.inputs import bench_or_own, named_numbers, request_of
@@ -25,7 +24,7 @@ from reports.outputs.tuning import REFINEMENT_HEAD, refinement_rows, refinement_
 def execute(options: Tune) -> int:
     """Execute the command; its exit code."""
     _refuse_together(options)
-    bench = options.on_bench or bench_or_own(options.bench, options.plan, drives=options.then_run)
+    bench = options.on_bench or bench_or_own(options.bench, options.plan)
     request = request_of(
         TuneRequest,
         options,
@@ -37,9 +36,9 @@ def execute(options: Tune) -> int:
     tuned = outcome.found
     if options.json_:
         print_json(outcome.summary)
-    elif tuned.ran is not None:
-        _print_run(tuned.ran)
     elif tuned.refined is not None:
+        if tuned.first_run is not None:
+            _print_first_run(tuned.first_run)
         _print_refined(tuned.refined)
     if tuned.stopped or tuned.exit_code == EXIT_CODE:
         INTERRUPTS.tell()
@@ -63,7 +62,7 @@ class _Prints(Reports):
             complain("note", text)
 
     def diagnosed(self, outcome: Outcome[Diagnosis]) -> None:
-        """The diagnosis of the run."""
+        """The diagnosis of the first run."""
         if not self._options.json_:
             print(diagnosis_in_words(outcome.found, outcome.folder))
 
@@ -72,14 +71,19 @@ def _refuse_together(options: Tune) -> None:
     """Raises:
     BadInputError: an option without the one that it goes with, or beside one that it does not go with.
     """
+    if options.then_run:
+        raise BadInputError(
+            "--then-run is now a part of --on-bench",
+            where="--then-run",
+            fix="use --on-bench BENCH --runs 1, where BENCH is a bench file or its name, such as sim",
+        )
     given = {"--runs": options.runs is not None, "--envelope": options.envelope, "--confirm": options.confirm}
     for option, is_given in given.items():
         if is_given and not options.on_bench:
             fix = "add --on-bench BENCH, or leave it out"
             raise BadInputError(f"{option} goes with --on-bench", where=option, fix=fix)
-    if options.on_bench and (options.bench or options.then_run):
-        option = "--bench" if options.bench else "--then-run"
-        raise BadInputError(f"{option} does not go with --on-bench", where=option, fix="leave it out")
+    if options.on_bench and options.bench:
+        raise BadInputError("--bench does not go with --on-bench", where="--bench", fix="leave it out")
 
 
 def _print_refined(refined: Refined) -> None:
@@ -93,9 +97,9 @@ def _print_refined(refined: Refined) -> None:
     page.print(refinement_verdict(refined.found), highlight=False, markup=False, soft_wrap=True)
 
 
-def _print_run(ran: Ran) -> None:
+def _print_first_run(ran: FirstRun) -> None:
     """Predicted and measured side by side."""
-    page, table = console(), plain_table("\npredicted and measured")
+    page, table = console(), plain_table("\nfirst run: predicted and measured")
     table.add_column("criterion", no_wrap=True)
     for name in ("predicted", "measured", "difference"):
         table.add_column(name, justify="right")
@@ -112,7 +116,7 @@ def _print_run(ran: Ran) -> None:
     page.print(_verdict(ran), highlight=False, markup=False, soft_wrap=True)
 
 
-def _verdict(ran: Ran) -> str:
+def _verdict(ran: FirstRun) -> str:
     allowed = f"{100 * ran.confirmation.allowed:g} % of the limit (of the larger value where there is none)"
     if ran.confirmation.agrees:
         return f"As predicted, within {allowed}."

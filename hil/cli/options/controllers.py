@@ -90,15 +90,13 @@ class Tune:
     sampled around it. Writes controller.toml, free.toml, tune.json, report.html, report.pdf and a figure.
     Ctrl-C ends the search and keeps the best so far.
 
-    --then-run then runs the plan with the tuned controller: run/ holds the run. If it deviates from the
-    prediction, diagnosis/ holds the reason.
-
     --on-bench refines the controller on that bench with at most --runs runs. One consent before the first
     run covers all runs within an envelope. Each run is predicted first and refused if it would leave the
-    envelope. bench/ holds the runs; controller.toml is the best one measured.
+    envelope. bench/ holds the runs; controller.toml is the best one measured. The first run is compared with
+    its prediction; if it deviates, diagnosis/ holds the reason. --runs 1 only confirms.
 
-    Exit code: 0 every criterion that depends on the controller passes (on every vehicle; with --then-run: in
-    the run, and as predicted; with --on-bench: in the best run), 1 one does not, 3 a run failed.
+    Exit code: 0 every criterion that depends on the controller passes (on every vehicle; with --on-bench: in
+    the best run, which if it is the first is also as predicted), 1 one does not, 3 a run failed.
     """
 
     SEVERAL = ("--envelope", "--may-worsen")
@@ -163,21 +161,6 @@ class Tune:
             autocompletion=shipped_bench(),
         ),
     ] = ""
-    then_run: Annotated[
-        bool,
-        typer.Option(
-            "--then-run", help="then run the plan with the tuned controller; compare with the prediction"
-        ),
-    ] = False
-    differ: Annotated[
-        float,
-        typer.Option(
-            metavar="PERCENT",
-            min=0.01,
-            max=1000,
-            help="deviation from the prediction, % of a criterion's limit, above which a run is diagnosed",
-        ),
-    ] = 5.0
     on_bench: Annotated[
         str,
         typer.Option(
@@ -188,8 +171,22 @@ class Tune:
         ),
     ] = ""
     runs: Annotated[
-        int | None, typer.Option(min=1, max=200, help="with --on-bench: largest number of runs; default: 20")
+        int | None,
+        typer.Option(
+            min=1, max=200, help="with --on-bench: largest number of runs; default: 20; 1: only confirm"
+        ),
     ] = None
+    differ: Annotated[
+        float,
+        typer.Option(
+            metavar="PERCENT",
+            min=0.01,
+            max=1000,
+            help="with --on-bench: deviation of the first run from its prediction, % of a criterion's limit, "
+            "above which it is diagnosed",
+        ),
+    ] = 5.0
+    then_run: Annotated[bool, typer.Option("--then-run", hidden=True)] = False
     envelope: Annotated[
         list[str] | None,
         typer.Option(

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import io
-from pathlib import Path
 
 import pytest
 from rich.console import Console
 
 from hil.analysis.tuning import confirmation
 from hil.app.autotune.loop import _off
-from hil.app.tuning.confirmation import Ran
+from hil.app.tuning.refinement import FirstRun
 from hil.cli.commands import tune
 from hil.cli.output import print_criteria
-from hil.core.recording import Recording
 from hil.core.result import CriterionResult
 
 
@@ -41,10 +39,7 @@ def test_a_difference_stands_in_its_unit_and_against_the_limit(
     measured = [_result("a.peak", 330.0, 600.0), _result("b.energy", 0.3952982)]
     page = Console(file=io.StringIO(), width=200)
     monkeypatch.setattr(tune, "console", lambda: page)
-    ran = Ran(
-        confirmation(predicted, measured, 0.02), Recording({}, Path("recording.mcap")), (), 0, "diagnosis"
-    )
-    tune._print_run(ran)
+    tune._print_first_run(FirstRun(confirmation(predicted, measured, 0.02), "diagnosis"))
     text = page.file.getvalue()  # type: ignore[attr-defined]
     rows = {
         line.split()[0]: line.split()[1:]

@@ -78,7 +78,7 @@ def test_what_became_worse_stands_first_in_text_summary_and_report(tmp_path, inp
 
 
 @pytest.mark.slow
-def test_it_is_run_at_once_and_a_bench_with_more_dead_time_is_diagnosed(tmp_path, inputs, monkeypatch):
+def test_one_run_confirms_it_and_a_bench_with_more_dead_time_is_diagnosed(tmp_path, inputs, monkeypatch):
     asked: list[DiagnoseRequest] = []
 
     def refused(request: DiagnoseRequest, feedback: Feedback) -> None:
@@ -86,11 +86,14 @@ def test_it_is_run_at_once_and_a_bench_with_more_dead_time_is_diagnosed(tmp_path
         asked.append(request)
         raise BadInputError("not now")
 
-    monkeypatch.setattr("hil.app.tuning.confirmation.diagnose_recordings", refused)
-    options = ["--starts", "1", "--at-most", "0.05", "--processes", "1", "--then-run"]
-    assert guarded(["tune", *inputs, *options, "--out", str(tmp_path / "same")]) == 0
-    told = json.loads((tmp_path / "same" / "tune.json").read_text())["confirmed"]
+    monkeypatch.setattr("hil.app.tuning.refinement.diagnose_recordings", refused)
+    options = ["--starts", "1", "--at-most", "0.05", "--processes", "1", "--runs", "1", "--on-bench"]
+    assert guarded(["tune", *inputs, *options, "sim", "--out", str(tmp_path / "same")]) == 0
+    written = json.loads((tmp_path / "same" / "tune.json").read_text())
+    told = written["confirmed"]
     assert told["agrees"]
+    assert len(written["refined"]["runs"]) == 1
+    assert "One run: worst margin measured" in (tmp_path / "same" / "report.html").read_text()
     assert max(one["apart"] for one in told["criteria"]) < 0.01
     assert not asked
     bench = (
@@ -102,11 +105,11 @@ def test_it_is_run_at_once_and_a_bench_with_more_dead_time_is_diagnosed(tmp_path
     model = (ROOT / MODEL).read_text().replace("torque_delay = 0.008", "torque_delay = 0.014")
     (tmp_path / "other.toml").write_text(model)
     out = tmp_path / "other"
-    options += ["--bench", str(tmp_path / "bench.toml"), "--differ", "0.1", "--out", str(out)]
+    options += [str(tmp_path / "bench.toml"), "--differ", "0.1", "--out", str(out)]
     assert guarded(["tune", *inputs, *options]) == 1
     assert not json.loads((out / "tune.json").read_text())["confirmed"]["agrees"]
-    assert asked[0].recordings == [out / "run" / "recording.mcap"]
-    assert (out / "run" / "result.json").is_file()
+    assert asked[0].recordings == [out / "bench/01/recording.mcap"]
+    assert (out / "bench/01/result.json").is_file()
 
 
 @pytest.mark.parametrize(

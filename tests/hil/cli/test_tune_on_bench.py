@@ -95,7 +95,7 @@ def test_a_bench_of_hardware_wants_a_name_and_then_goes_on_unasked(tmp_path, inp
     [
         (["--runs", "3"], "--runs goes with --on-bench"),
         (["--confirm", "me"], "--confirm goes with --on-bench"),
-        (["--on-bench", "sim", "--then-run"], "--then-run does not go with --on-bench"),
+        (["--then-run"], "use --on-bench BENCH --runs 1"),
         (["--on-bench", "sim", "--bench", "sim"], "--bench does not go with --on-bench"),
         (["--on-bench", "nowhere"], "nowhere"),
         (["--on-bench", HARDWARE], "a person's consent"),
