@@ -46,6 +46,14 @@ def inputs_of(recording: Recording) -> dict[str, bytes]:
     return {**files, PLAN: _beside(plan, paths).encode(), BENCH: _beside(bench, paths).encode()}
 
 
+def stored_paths(recording: Recording, files: set[str]) -> list[str]:
+    """Paths by which the plan and the bench named these files when the run was made."""
+    stored = recording.attachments
+    return sorted(
+        set(_paths([yaml.safe_load(stored[PLAN]), parse_toml(stored[BENCH].decode(), BENCH)], files))
+    )
+
+
 def command_again(recording: Recording, folder: Path) -> str:
     """The command that carries the run out again, with the values that its variables had."""
     words = ["hil", "run", str(folder / PLAN), "--bench", str(folder / BENCH)]

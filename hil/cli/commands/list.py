@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
+from dataclasses import fields
 from typing import Any
 
 from pydantic import BaseModel
 from rich.markup import escape
 
+from hil.cli.listed_runs import list_runs
 from hil.cli.options.files import List
 from hil.cli.output import console, plain_table, print_json
 from hil.core.effects import EFFECTS
@@ -29,14 +31,29 @@ Row = dict[str, Any]
 def execute(options: List) -> int:
     """Execute the command; its exit code."""
     what = options.what
+    if what == "runs":
+        return list_runs(options)
     if what not in _LISTS:
-        raise BadInputError(f"there is no list of '{printable(what, 60)}'", fix=did_you_mean(what, _LISTS))
+        fix = did_you_mean(what, [*_LISTS, "runs"])
+        raise BadInputError(f"there is no list of '{printable(what, 60)}'", fix=fix)
+    _refuse_beside(options)
     rows = _LISTS[what]()
     if options.as_json:
         print_json({what: rows})
     else:
         _tell(rows)
     return 0
+
+
+def _refuse_beside(options: List) -> None:
+    """Raises:
+    BadInputError: an argument or option that only runs have.
+    """
+    for field in fields(options):
+        name = field.name
+        if name not in ("what", "as_json") and getattr(options, name) != field.default:
+            option = "DIR" if name == "folder" else f"--{name}"
+            raise BadInputError(f"{option} goes with `hil list runs`", where=option, fix="leave it out")
 
 
 def _plans() -> list[Row]:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import sys
+import tempfile
+from dataclasses import replace
 from pathlib import Path
 
+from hil.app.again import compared_in_words, earlier_run
 from hil.app.run import FinishedRun, RunSettings
 from hil.app.series import announce_series, repeated, run_series
-from hil.cli.inputs import all_choices, bench_or_own
+from hil.cli.inputs import all_choices, bench_or_own, named_values
 from hil.cli.options.runs import Run
 from hil.cli.output import (
     TERMINAL,
@@ -20,6 +23,7 @@ from hil.cli.output import (
     warn,
 )
 from hil.cli.run_output import print_in_series, print_series, show_in_browser, times_in_words, timing_in_words
+from hil.cli.streams import complain
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable
 from hil.core.model import load_model
@@ -30,6 +34,40 @@ from test_plans import Plan, load_plan
 
 def execute(options: Run) -> int:
     """Execute the command; its exit code."""
+    if options.again is not None:
+        return _execute_again(options, options.again)
+    if not options.plan:
+        fix = "name a plan (`hil list plans`), or an earlier run by --again"
+        raise BadInputError("nothing to run is named", where="plan", fix=fix)
+    return _execute(options)
+
+
+def _execute_again(options: Run, run: Path) -> int:
+    """An earlier run once more, with what is stored of it."""
+    for option, given in {"a plan": options.plan, "--server": options.server}.items():
+        if given:
+            raise BadInputError(f"{option} does not go with --again", where="--again", fix="leave it out")
+    with tempfile.TemporaryDirectory(prefix="hil-again-") as folder:
+        before = earlier_run(run, Path(folder))
+        if before.bench is None and not options.bench:
+            fix = "name the bench's file of today with --bench: limits and calibrations may have changed"
+            raise BadInputError("ran on hardware, which is not driven unnamed", where=str(run), fix=fix)
+        for text in before.changes or ("software and files are those of the earlier run",):
+            complain("note", text)
+        chosen = named_values(options.values or (), "--set")
+        values = {name: f"{value!r}" for name, value in before.values.items()} | chosen
+        return _execute(
+            replace(
+                options,
+                plan=str(before.plan),
+                bench=options.bench or str(before.bench),
+                values=[f"{name}={value}" for name, value in values.items()],
+            ),
+            before.result,
+        )
+
+
+def _execute(options: Run, before: RunResult | None = None) -> int:
     choices = list(all_choices(options.values, options.controller))
     if options.server:
         _refuse_here_only(
@@ -74,6 +112,8 @@ def execute(options: Run) -> int:
         return _run_series(options, settings, plans, bench)
     with settings.execute(plans[0], bench, options.out) as run:
         _print_run(run.result, run.folder, show=options.show, as_json=options.as_json)
+        if before is not None:
+            complain("note", compared_in_words(before, run.result))
         return run.exit_code
 
 

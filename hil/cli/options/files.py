@@ -30,18 +30,54 @@ class Init:
 
 @dataclass(frozen=True, kw_only=True)
 class List:
-    """List built-in plans, benches, models and effects, or the steps, metrics and devices for files.
+    """List built-in plans, benches, models and effects, the steps, metrics and devices for files, or runs.
 
-    Steps, metrics and devices of installed packages stand there too.
+    Steps, metrics and devices of installed packages stand there too. `hil list runs DIR` finds the runs below
+    a folder; the options choose and sort them.
     """
+
+    SEVERAL = ("--plan", "--bench", "--verdict")
 
     what: Annotated[
         str,
         typer.Argument(
-            help="plans, benches, models, effects, steps, metrics or devices",
-            autocompletion=one_of("plans", "benches", "models", "effects", "steps", "metrics", "devices"),
+            help="plans, benches, models, effects, steps, metrics, devices or runs",
+            autocompletion=one_of(
+                "plans", "benches", "models", "effects", "steps", "metrics", "devices", "runs"
+            ),
         ),
     ]
+    folder: Annotated[
+        Path | None,
+        typer.Argument(metavar="[DIR]", help="with runs: folder that they lie below; default: out"),
+    ] = None
+    plan: Annotated[list[str] | None, typer.Option(metavar="NAME", help="with runs: of this plan")] = None
+    bench: Annotated[list[str] | None, typer.Option(metavar="NAME", help="with runs: on this bench")] = None
+    verdict: Annotated[
+        list[str] | None,
+        typer.Option(metavar="VERDICT", help="with runs: pass, fail, done or error"),
+    ] = None
+    since: Annotated[
+        str, typer.Option(metavar="DATE", help="with runs: begun then or later, such as 2026-11-28T06:00")
+    ] = ""
+    until: Annotated[str, typer.Option(metavar="DATE", help="with runs: begun before")] = ""
+    criterion: Annotated[
+        str, typer.Option(metavar="ID", help="with runs: that have this criterion, with its value")
+    ] = ""
+    above: Annotated[
+        float | None, typer.Option(metavar="VALUE", help="with runs: the criterion's value is at least this")
+    ] = None
+    below: Annotated[
+        float | None, typer.Option(metavar="VALUE", help="with runs: the criterion's value is at most this")
+    ] = None
+    sort: Annotated[
+        str,
+        typer.Option(metavar="KEY", help="with runs: by run, plan, bench, verdict, started, margin or value"),
+    ] = "started"
+    rising: Annotated[bool, typer.Option("--rising", help="with runs: smallest, first or oldest on top")] = (
+        False
+    )
+    most: Annotated[int | None, typer.Option(min=1, help="with runs: number of runs shown at most")] = None
     as_json: JsonObject = False
 
 

@@ -30,7 +30,16 @@ class Run:
 
     SEVERAL = ("--controller", "--set")
 
-    plan: PlanName
+    plan: PlanName = ""
+    again: Annotated[
+        Path | None,
+        typer.Option(
+            "--again",
+            metavar="RUN",
+            help="run directory or recording to run once more, with the plan, bench, model, controllers, "
+            "values and seed that are stored in it; other options replace parts of it",
+        ),
+    ] = None
     bench: BenchName = ""
     out: Annotated[
         Path | None,
