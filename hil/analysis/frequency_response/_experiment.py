@@ -6,12 +6,13 @@ Lines are scaled so that experiments of any length and rate can be put together.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 from scipy import fft
 
+from hil.analysis.frequency_response._outside import split_by_motion
 from hil.analysis.frequency_response._quality import UnfitDataError
 from hil.analysis.plausible import refuse_implausible
 from hil.core.channels import INPUT, OUTPUTS, TICK_S, TIME
@@ -75,8 +76,9 @@ def experiments_of(
 ) -> list[Experiment]:
     """Cut a recording into experiments.
 
-    Without `segments`, each chirp or multisine segment of the run is one experiment; a recording
-    without segments is one experiment as a whole.
+    Without `segments`, each chirp or multisine segment of the run is one experiment. A recording without
+    segments is one experiment, or several where stretches are left out in which the input rests and something
+    else moves the axle.
 
     Args:
         recording: the data.
@@ -93,7 +95,7 @@ def experiments_of(
     known = segments_of(recording)
     chosen = _choose(known, segments, str(recording.source))
     if not chosen:
-        return [_experiment(recording, str(recording.source), "", input_channel, to_hz, hold_s)]
+        return _without_segments(recording, input_channel, to_hz, hold_s)
     return [
         _experiment(
             recording.between(part.start_s, part.end_s),
@@ -105,6 +107,29 @@ def experiments_of(
         )
         for part in chosen
     ]
+
+
+def _without_segments(
+    recording: Recording, input_channel: str, to_hz: float, hold_s: float | None
+) -> list[Experiment]:
+    name = str(recording.source)
+    kept, left_out = split_by_motion(recording, input_channel)
+    if not kept:
+        return [_experiment(recording, name, "", input_channel, to_hz, hold_s)]
+    words = ", ".join(one.in_words for one in left_out)
+    note = f"left out: {words}; the input rests, and something else moves the axle in one of them"
+    found = [
+        _experiment(
+            recording.between(one.start_s, one.end_s),
+            f"{name}: {one.in_words}",
+            "",
+            input_channel,
+            to_hz,
+            hold_s,
+        )
+        for one in kept
+    ]
+    return [replace(found[0], notes=(*found[0].notes, note)), *found[1:]]
 
 
 def _choose(known: Sequence[Segment], wanted: Sequence[str], where: str) -> list[Segment]:
