@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from hil.core.recording import Recording
 from hil.core.result import Segment
@@ -41,6 +41,12 @@ class _InPlay(WindowMetric):
         default=10.0, gt=0, le=100, description="torque of a firm contact, % of the step's size"
     )
     firm_nm: float | None = Field(default=None, gt=0, description="torque of a firm contact instead, N m")
+
+    @model_validator(mode="after")
+    def _has_one_firm_torque(self) -> Self:
+        if self.firm_nm is not None and "firm_percent" in self.model_fields_set:
+            raise ValueError("'firm_nm' stands in place of 'firm_percent': give one of them")
+        return self
 
     def contacts(self, recording: Recording, segment: Segment) -> tuple[Contact, ...]:
         """Every firm contact with another flank than the last one, in order.

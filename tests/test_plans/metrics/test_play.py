@@ -116,3 +116,9 @@ def test_crossings_are_changes_of_sign_between_firm_torques(levels: list[float])
     assert PlayCrossings(firm_nm=49.0).compute(recording, OUT) >= changes
     assert PlayCrossings(firm_nm=1e-9 + 49.999999).compute(recording, OUT) >= changes
     assert TimeInPlay(firm_nm=50.0).compute(recording, OUT) >= 0
+
+
+def test_one_torque_of_a_firm_contact_is_given() -> None:
+    with pytest.raises(ValueError, match="stands in place of 'firm_percent'"):
+        Clunk(firm_nm=20.0, firm_percent=5.0)
+    assert Clunk(firm_nm=20.0).firm_percent == 10.0
