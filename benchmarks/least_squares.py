@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from benchmarks.answers import largest_difference
-from hil.analysis.diagnosis.fit._least_squares import box_step
+from hil.analysis.diagnosis.fit.least_squares import box_step
 
 TIMES, SIZE, ROWS = 200, 12, 40
 SAME = 1e-6  # in numbers of about 0.3

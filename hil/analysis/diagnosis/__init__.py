@@ -1,13 +1,13 @@
 """Why simulation and measurement differ: effects that a model lacks, found by name in recordings."""
 
 from hil.analysis.diagnosis._diagnose import diagnose
-from hil.analysis.diagnosis.data._gap import BANDS_HZ, CONDITIONS, ChannelGap, GapMap
-from hil.analysis.diagnosis.data._sanity import examine
-from hil.analysis.diagnosis.data._thresholds import LEAST_SAMPLES
-from hil.analysis.diagnosis.data._trace import unbroken
-from hil.analysis.diagnosis.search._thresholds import BOOTSTRAP_DRAWS
-from hil.analysis.diagnosis.tell._consequences import why_no_step
-from hil.analysis.diagnosis.tell._result import (
+from hil.analysis.diagnosis.data.gap import BANDS_HZ, CONDITIONS, ChannelGap, GapMap
+from hil.analysis.diagnosis.data.sanity import examine
+from hil.analysis.diagnosis.data.thresholds import LEAST_SAMPLES
+from hil.analysis.diagnosis.data.trace import unbroken
+from hil.analysis.diagnosis.search.thresholds import BOOTSTRAP_DRAWS
+from hil.analysis.diagnosis.tell.consequences import why_no_step
+from hil.analysis.diagnosis.tell.result import (
     INTERRUPTED,
     Alternative,
     Considered,
@@ -15,7 +15,7 @@ from hil.analysis.diagnosis.tell._result import (
     NamedEffect,
     Overlay,
 )
-from hil.analysis.diagnosis.tell._words import Where
+from hil.analysis.diagnosis.tell.words import Where
 
 __all__ = [
     "BANDS_HZ",

@@ -11,28 +11,27 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis._asked import Asked
-from hil.analysis.diagnosis.data._grid import coarse_noise, grids
-from hil.analysis.diagnosis.data._noise import cancelling, rising
-from hil.analysis.diagnosis.data._sanity import Examined, examined
-from hil.analysis.diagnosis.data._stated import stated_noise
-from hil.analysis.diagnosis.data._trace import Trace
-from hil.analysis.diagnosis.fit._allowance import UNBOUNDED, Allowance, OutOfTimeError
-from hil.analysis.diagnosis.fit._between_samples import likelier_requests
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis, untold
-from hil.analysis.diagnosis.fit._fit import fit, polished
-from hil.analysis.diagnosis.fit._problem import Problem, problem_of
-from hil.analysis.diagnosis.fit._reweighted import reweighted
-from hil.analysis.diagnosis.search._by_chance import most_by_chance
-from hil.analysis.diagnosis.search._evidence import Evidence
-from hil.analysis.diagnosis.search._foretold import counted_after_all, left_out
-from hil.analysis.diagnosis.search._from_base import search_from_base
-from hil.analysis.diagnosis.search._hopping import hopped
-from hil.analysis.diagnosis.search._search import Found, begun, search, so_far
-from hil.analysis.diagnosis.search._wandering import with_wandering
-from hil.analysis.diagnosis.tell._confidence import Sure, drop_of
-from hil.analysis.diagnosis.tell._judged import Judged
-from hil.analysis.diagnosis.tell._result import INTERRUPTED, OUT_OF_TIME, Diagnosis, Verdict
-from hil.analysis.diagnosis.tell._verdict import verdict_of
+from hil.analysis.diagnosis.data.grid import coarse_noise, grids
+from hil.analysis.diagnosis.data.noise import cancelling, rising, stated_noise
+from hil.analysis.diagnosis.data.sanity import Examined, examined
+from hil.analysis.diagnosis.data.trace import Trace
+from hil.analysis.diagnosis.fit.allowance import UNBOUNDED, Allowance, OutOfTimeError
+from hil.analysis.diagnosis.fit.between_samples import likelier_requests
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis, undetermined
+from hil.analysis.diagnosis.fit.fit import fit, polished
+from hil.analysis.diagnosis.fit.problem import Problem, problem_of
+from hil.analysis.diagnosis.fit.reweighted import reweighted
+from hil.analysis.diagnosis.search.by_chance import most_by_chance
+from hil.analysis.diagnosis.search.evidence import Evidence
+from hil.analysis.diagnosis.search.from_base import search_from_base
+from hil.analysis.diagnosis.search.hopping import hopped
+from hil.analysis.diagnosis.search.predictable import counted_after_all, left_out
+from hil.analysis.diagnosis.search.search import Found, begin_search, search, so_far
+from hil.analysis.diagnosis.search.wandering import with_wandering
+from hil.analysis.diagnosis.tell.confidence import Sure, drop_of
+from hil.analysis.diagnosis.tell.judged import Judged
+from hil.analysis.diagnosis.tell.result import INTERRUPTED, OUT_OF_TIME, Diagnosis, Verdict
+from hil.analysis.diagnosis.tell.verdict import verdict_of
 from hil.analysis.plausible import refuse_same_data, within_floating_point
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
@@ -66,11 +65,11 @@ def diagnose(
         noise: standard deviation of a sample that a channel's sensor is known to have, by channel; before
             what the recordings' bench files state.
         least: smallest size of an effect that is worth a name, by effect; others have sizes of their own.
-        at_most_s: processor time of the search, s; what it knows by then is told as `unfinished`.
-        show: told what is going on.
+        at_most_s: processor time of the search, s; what it knows by then is stated as `unfinished`.
+        show: stated what is going on.
 
     An interrupt (KeyboardInterrupt) ends the search likewise; before anything is known, and while it is
-    told, it is raised.
+    stated, it is raised.
 
     Raises:
         BadInputError: the recordings cannot belong to the model (inverted, swapped, dead, clipped, wrong
@@ -117,7 +116,7 @@ def _diagnosed(
 
 
 def _with_care(problem: Problem, found: Found) -> Problem:
-    """What is named in `found` fitted to its end, to all that it foretells; where errors count then."""
+    """What is named in `found` fitted to its end, to all that it predicts; where errors count then."""
     if problem.partial:
         problem, found.best = counted_after_all(problem, found.base, found.best)
         found.evidence = Evidence(problem, found.base, found.evidence.rounding)
@@ -132,7 +131,7 @@ def _made_ready(
     """The base model, what is to be fitted and what is held out, roundings of channels, notes on the data."""
     seen = examined(model, recordings)
     held = examined(model, holdout, seen.traces)
-    base = Hypothesis(model, held=untold(seen.traces))
+    base = Hypothesis(model, held=undetermined(seen.traces))
     rounded = grids(seen.traces, seen.noise)
     means = cancelling(seen.traces, seen.noise)
     noise = rising(seen.traces, means, seen.noise)
@@ -175,5 +174,5 @@ def _searched(
     except OutOfTimeError:
         if not known:  # nothing was fitted yet: the model as it came
             free = replace(problem, allowance=UNBOUNDED)
-            known.append(begun(free, fit(free, hypothesis, rounds=0), rounded))
+            known.append(begin_search(free, fit(free, hypothesis, rounds=0), rounded))
         return so_far(known), OUT_OF_TIME

@@ -6,16 +6,16 @@ from collections.abc import Iterator
 from types import ModuleType
 from typing import Any, get_type_hints
 
-from hil.analysis.diagnosis._threshold import CHECKS, Means
-from hil.analysis.diagnosis.data import _thresholds as of_data
-from hil.analysis.diagnosis.fit import _thresholds as of_fit
-from hil.analysis.diagnosis.search import _thresholds as of_search
-from hil.analysis.diagnosis.tell import _thresholds as of_tell
+from hil.analysis.diagnosis.data import thresholds as of_data
+from hil.analysis.diagnosis.fit import thresholds as of_fit
+from hil.analysis.diagnosis.search import thresholds as of_search
+from hil.analysis.diagnosis.tell import thresholds as of_tell
+from hil.analysis.diagnosis.threshold import CHECKS, Means
 
 _ROOMS = {"data": of_data, "fit": of_fit, "search": of_search, "tell": of_tell}
 _HEAD = """# Thresholds of the diagnosis
 
-Made by `.venv/bin/python -m hil.analysis.diagnosis.threshold_page` from `_thresholds.py` of each room; a test
+Made by `.venv/bin/python -m hil.analysis.diagnosis.threshold_page` from `thresholds.py` of each room; a test
 compares. They are heuristics: what each decides, and which check shows if a changed one is still right.
 Sizes at which effects are tried, and how far fits move them, stand with the effects (`hil/core/effects`).
 

@@ -1,1 +1,1 @@
-"""What was found, told: verdict, names, confidence, places, tests that would separate."""
+"""What was found, stated: verdict, names, confidence, places, tests that would separate."""

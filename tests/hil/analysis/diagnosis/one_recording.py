@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from hil.analysis.diagnosis.data._noise import noise_levels
-from hil.analysis.diagnosis.data._trace import Trace, trace_of
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._errors import Errors
-from hil.analysis.diagnosis.fit._fit import Fit
-from hil.analysis.diagnosis.fit._problem import Problem, problem_of
+from hil.analysis.diagnosis.data.noise import noise_levels
+from hil.analysis.diagnosis.data.trace import Trace, trace_of
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.errors import Errors
+from hil.analysis.diagnosis.fit.fit import Fit
+from hil.analysis.diagnosis.fit.problem import Problem, problem_of
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from hil.analysis.diagnosis.data._noise import noise_levels
-from hil.analysis.diagnosis.data._trace import trace_of
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._problem import Problem, problem_of
+from hil.analysis.diagnosis.data.noise import noise_levels
+from hil.analysis.diagnosis.data.trace import trace_of
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.problem import Problem, problem_of
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse

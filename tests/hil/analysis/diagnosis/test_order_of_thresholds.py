@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from hil.analysis.diagnosis.fit import _thresholds as fit
-from hil.analysis.diagnosis.tell import _thresholds as tell
+from hil.analysis.diagnosis.fit import thresholds as fit
+from hil.analysis.diagnosis.tell import thresholds as tell
 
 
 def test_a_correction_is_smaller_than_a_finding_and_a_finding_than_what_may_be_found() -> None:

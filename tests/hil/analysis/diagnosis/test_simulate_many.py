@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hil.analysis.diagnosis.fit._least_squares import box_step
+from hil.analysis.diagnosis.fit.least_squares import box_step
 from hil.core.model import EffectUse, Model
 from hil.plant import Start, ideal_sensors, pack, simulate, simulate_many
 from tests.hil.analysis.diagnosis.reference_plant import BASE, CHANNELS

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from hil.analysis.diagnosis._threshold import CHECKS
+from hil.analysis.diagnosis.threshold import CHECKS
 from hil.analysis.diagnosis.threshold_page import _ROOMS, page, thresholds
 
 _ROOT = Path(__file__).parents[4]

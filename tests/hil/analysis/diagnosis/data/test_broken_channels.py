@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._broken_channels import coarse, refuse_broken_channels
+from hil.analysis.diagnosis.data.broken_channels import coarse, refuse_broken_channels
 from hil.core.errors import BadInputError
 from tests.hil.analysis.diagnosis.one_recording import NOISE, one_trace
 

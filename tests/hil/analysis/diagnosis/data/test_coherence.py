@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from hil.analysis.diagnosis.data._coherence import Split, _is_fed_back, _spectra, split
-from hil.analysis.diagnosis.data._noise import noise_levels
-from hil.analysis.diagnosis.data._trace import trace_of
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import Fit, fit
-from hil.analysis.diagnosis.fit._problem import Problem, problem_of
+from hil.analysis.diagnosis.data.coherence import Split, _is_fed_back, _spectra, split
+from hil.analysis.diagnosis.data.noise import noise_levels
+from hil.analysis.diagnosis.data.trace import trace_of
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.fit import Fit, fit
+from hil.analysis.diagnosis.fit.problem import Problem, problem_of
 from hil.core.model import Model
 from tests.hil.analysis.diagnosis.reference_plant import BASE, Truth, recordings
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from hil.analysis.diagnosis import examine
-from hil.analysis.diagnosis.data._frozen import refuse_frozen
-from hil.analysis.diagnosis.data._trace import trace_of
+from hil.analysis.diagnosis.data.frozen import refuse_frozen
+from hil.analysis.diagnosis.data.trace import trace_of
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model, parameter_names
 from hil.core.recording import Recording

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._gap import BANDS_HZ, CONDITIONS, channel_gaps, conditions_of, gap_map
+from hil.analysis.diagnosis.data.gap import BANDS_HZ, CONDITIONS, channel_gaps, conditions_of, gap_map
 from hil.core.channels import OUTPUTS
 from tests.hil.analysis.diagnosis.one_recording import one_trace
 

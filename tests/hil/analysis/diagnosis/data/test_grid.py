@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._grid import coarse_noise, grid_step, grids
+from hil.analysis.diagnosis.data.grid import coarse_noise, grid_step, grids
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import NOISE, one_trace

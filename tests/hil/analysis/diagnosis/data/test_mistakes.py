@@ -5,9 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._mistakes import mistaken
-from hil.analysis.diagnosis.data._noise import noise_levels
-from hil.analysis.diagnosis.data._trace import Trace, trace_of
+from hil.analysis.diagnosis.data.mistakes import mistaken
+from hil.analysis.diagnosis.data.noise import noise_levels
+from hil.analysis.diagnosis.data.trace import Trace, trace_of
 from tests.hil.analysis.diagnosis.one_recording import MODEL, recorded
 
 RPM = 60.0 / (2.0 * np.pi)

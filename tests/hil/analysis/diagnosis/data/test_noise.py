@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._noise import cancelling, noise_levels, rising, usable_noise
-from hil.analysis.diagnosis.data._thresholds import FLOOR_BAND
-from hil.analysis.diagnosis.data._trace import Trace, trace_of
+from hil.analysis.diagnosis.data.noise import cancelling, noise_levels, rising, usable_noise
+from hil.analysis.diagnosis.data.thresholds import FLOOR_BAND
+from hil.analysis.diagnosis.data.trace import Trace, trace_of
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.recording import Recording
 from tests.hil.analysis.diagnosis.one_recording import NOISE, one_trace, recorded

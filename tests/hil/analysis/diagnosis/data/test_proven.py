@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from hil.analysis.diagnosis.data._coherence import Split
-from hil.analysis.diagnosis.data._proven import proven_noise
-from hil.analysis.diagnosis.data._thresholds import SLOW_UNPROVEN
-from hil.analysis.diagnosis.data._trace import Trace, blocks
+from hil.analysis.diagnosis.data.coherence import Split
+from hil.analysis.diagnosis.data.noise import proven_noise
+from hil.analysis.diagnosis.data.thresholds import SLOW_UNPROVEN
+from hil.analysis.diagnosis.data.trace import Trace, blocks
 from tests.hil.analysis.diagnosis.one_recording import NOISE, one_trace
 
 WHITE = np.array(NOISE)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from hil.analysis.diagnosis.data._request import is_stepped, smooth
+from hil.analysis.diagnosis.data.request import is_stepped, smooth
 from tests.hil.analysis.diagnosis.one_recording import one_trace
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._noise import noise_levels
-from hil.analysis.diagnosis.data._sanity import examine, examined
+from hil.analysis.diagnosis.data.noise import noise_levels
+from hil.analysis.diagnosis.data.sanity import examine, examined
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model

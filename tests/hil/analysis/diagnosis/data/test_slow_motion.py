@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._slow_motion import slow_motion_of, with_outputs_of
+from hil.analysis.diagnosis.data.slow_motion import slow_motion_of, with_outputs_of
 from hil.core.channels import OUTPUTS, TIME
 from hil.core.errors import BadInputError
 from hil.core.model import Model, TransferFunction

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hil.analysis.diagnosis.data._spikes import without_spikes
-from hil.analysis.diagnosis.data._thresholds import SPIKES
-from hil.analysis.diagnosis.data._trace import trace_of
+from hil.analysis.diagnosis.data.spikes import without_spikes
+from hil.analysis.diagnosis.data.thresholds import SPIKES
+from hil.analysis.diagnosis.data.trace import trace_of
 from tests.hil.analysis.diagnosis.one_recording import recorded
 
 WHEEL = "wheel_speed_rad_s"

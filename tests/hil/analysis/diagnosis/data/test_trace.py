@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._trace import blocks, trace_of
+from hil.analysis.diagnosis.data.trace import blocks, trace_of
 from hil.core.errors import BadInputError
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_trace, recorded
 

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from hil.analysis.diagnosis.fit._allowance import Allowance, OutOfTimeError
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import fit
+from hil.analysis.diagnosis.fit.allowance import Allowance, OutOfTimeError
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.fit import fit
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
 
 

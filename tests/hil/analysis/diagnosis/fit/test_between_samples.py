@@ -5,10 +5,10 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._trace import Trace, trace_of
-from hil.analysis.diagnosis.fit._between_samples import likelier_requests
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._problem import Problem, problem_of
+from hil.analysis.diagnosis.data.trace import Trace, trace_of
+from hil.analysis.diagnosis.fit.between_samples import likelier_requests
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.problem import Problem, problem_of
 from hil.core.channels import INPUT
 from hil.core.recording import Recording
 from hil.plant import simulate

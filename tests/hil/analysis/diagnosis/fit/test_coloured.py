@@ -5,8 +5,8 @@ import pytest
 from scipy.linalg import toeplitz
 from scipy.signal import lfilter
 
-from hil.analysis.diagnosis.fit._coloured import coloured_spread
-from hil.analysis.diagnosis.fit._errors import Errors
+from hil.analysis.diagnosis.fit.coloured import coloured_spread
+from hil.analysis.diagnosis.fit.errors import Errors
 
 BLOCKS, NUMBERS = 2000, 3
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis, key_of, sensors_of
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis, key_of, sensors_of
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from hil.plant import SENSOR_DELAY, SENSOR_GAIN, SENSOR_OFFSET

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from hil.analysis.diagnosis.fit._covariance import standard_errors
-from hil.analysis.diagnosis.fit._errors import Errors
-from hil.analysis.diagnosis.fit._fit import Fit
+from hil.analysis.diagnosis.fit.covariance import standard_errors
+from hil.analysis.diagnosis.fit.errors import Errors
+from hil.analysis.diagnosis.fit.fit import Fit
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, left, one_problem
 

@@ -5,9 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._far import identified
-from hil.analysis.diagnosis.fit._fit import fit
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.far import identified
+from hil.analysis.diagnosis.fit.fit import fit
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
 
 FACTORS = {

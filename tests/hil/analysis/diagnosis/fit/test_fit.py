@@ -5,10 +5,10 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._noise import noise_levels
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import carried, cheapest, fit
-from hil.analysis.diagnosis.fit._problem import problem_of
+from hil.analysis.diagnosis.data.noise import noise_levels
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.fit import cheapest, fit, started_from
+from hil.analysis.diagnosis.fit.problem import problem_of
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem, one_trace
@@ -29,7 +29,7 @@ def test_a_hidden_number_is_found_with_its_error() -> None:
 def test_numbers_are_carried_to_a_larger_hypothesis() -> None:
     problem = one_problem()
     parent = fit(problem, Hypothesis(MODEL), rounds=1)
-    theta = carried(parent, parent.hypothesis.with_term(GUESS))
+    theta = started_from(parent, parent.hypothesis.with_term(GUESS))
     assert np.array_equal(theta[:-1], parent.theta)
     assert theta[-1] == 1.0
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.fit._normal import normal_equations, promised_gain, reduced, start_step
+from hil.analysis.diagnosis.fit.normal import normal_equations, promised_gain, reduced, start_step
 
 
 def test_eliminated_starts_give_the_same_step() -> None:

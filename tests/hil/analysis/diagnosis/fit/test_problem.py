@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._trace import trace_of
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._problem import Problem, problem_of
-from hil.analysis.diagnosis.fit._simulated import settled_starts
+from hil.analysis.diagnosis.data.trace import trace_of
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.problem import Problem, problem_of
+from hil.analysis.diagnosis.fit.simulated import settled_starts
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import EffectUse, Model, parameter_names
 from hil.core.recording import Recording
@@ -20,7 +20,7 @@ RATIO = MODEL.parameters["gear_ratio"]
 
 
 def moving_problem() -> Problem:
-    """The one recording, begun in mid-motion."""
+    """The one recording, started in mid-motion."""
     away = dataclasses.replace(one_trace(), start=np.array([100.0, 12.0, 0.0]))
     return problem_of([away], np.array(NOISE), RATIO)
 
@@ -116,14 +116,14 @@ def test_a_noisy_zero_does_not_say_rest_where_the_wheel_turns(
     samples, measured = trace.samples.copy(), trace.measured.copy()
     if np.isnan(wheel):
         samples[:, 1] = measured[:, 1] = np.nan
-    begun = dataclasses.replace(
+    started = dataclasses.replace(
         trace,
         samples=samples,
         measured=measured,
         start=np.array([motor, wheel, 0.0]),
         start_samples=20,
     )
-    problem = problem_of([begun], np.array([motor_noise, 0.08, 1.0]), RATIO)
+    problem = problem_of([started], np.array([motor_noise, 0.08, 1.0]), RATIO)
     assert problem.resting == (rests,)
 
 

@@ -4,11 +4,11 @@ import dataclasses
 
 import numpy as np
 
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._covariance import standard_errors
-from hil.analysis.diagnosis.fit._fit import fit
-from hil.analysis.diagnosis.fit._reweighted import reweighted
-from hil.analysis.diagnosis.fit._thresholds import MISS_WORSE
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.covariance import standard_errors
+from hil.analysis.diagnosis.fit.fit import fit
+from hil.analysis.diagnosis.fit.reweighted import reweighted
+from hil.analysis.diagnosis.fit.thresholds import MISS_WORSE
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
 

@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._noise import noise_levels
-from hil.analysis.diagnosis.data._trace import trace_of
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._problem import MOTOR, WHEEL, Problem, problem_of
-from hil.analysis.diagnosis.fit._simulated import creeping, settled_starts, simulated_samples
+from hil.analysis.diagnosis.data.noise import noise_levels
+from hil.analysis.diagnosis.data.trace import trace_of
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.problem import MOTOR, WHEEL, Problem, problem_of
+from hil.analysis.diagnosis.fit.simulated import creeping, settled_starts, simulated_samples
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.recording import Recording
 from hil.plant import Start, simulate

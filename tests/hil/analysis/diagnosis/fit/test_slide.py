@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import fit, fitted_on
-from hil.analysis.diagnosis.fit._slide import slid
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.far import slid
+from hil.analysis.diagnosis.fit.fit import fit, fitted_on
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from hil.analysis.diagnosis.fit._errors import Errors
-from hil.analysis.diagnosis.fit._whitening import whitening_of
+from hil.analysis.diagnosis.fit.errors import Errors
+from hil.analysis.diagnosis.fit.whitening import whitening_of
 
 
 def test_coloured_errors_become_white() -> None:

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._noise import noise_levels
-from hil.analysis.diagnosis.data._trace import trace_of
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import Fit, fit
-from hil.analysis.diagnosis.fit._problem import Problem, problem_of
-from hil.analysis.diagnosis.fit._whole_samples import delay_by_samples
+from hil.analysis.diagnosis.data.noise import noise_levels
+from hil.analysis.diagnosis.data.trace import trace_of
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.fit import Fit, fit
+from hil.analysis.diagnosis.fit.problem import Problem, problem_of
+from hil.analysis.diagnosis.fit.whole_samples import delay_by_samples
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording

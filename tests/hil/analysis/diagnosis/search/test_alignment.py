@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from hil.analysis.diagnosis.data._noise import noise_levels
-from hil.analysis.diagnosis.data._trace import Trace, trace_of
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import fit
-from hil.analysis.diagnosis.fit._problem import Problem, problem_of
-from hil.analysis.diagnosis.search._alignment import aligned, with_base_angles
-from hil.analysis.diagnosis.search._screen import screen
-from hil.analysis.diagnosis.search._tracking import track, tracked_gain
+from hil.analysis.diagnosis.data.noise import noise_levels
+from hil.analysis.diagnosis.data.trace import Trace, trace_of
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.fit import fit
+from hil.analysis.diagnosis.fit.problem import Problem, problem_of
+from hil.analysis.diagnosis.search.alignment import aligned, with_base_angles
+from hil.analysis.diagnosis.search.screen import screen
+from hil.analysis.diagnosis.search.tracking import track, tracked_gain
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from hil.analysis.diagnosis.data._noise import noise_levels
-from hil.analysis.diagnosis.data._trace import trace_of
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import fit
-from hil.analysis.diagnosis.fit._problem import Problem, problem_of
-from hil.analysis.diagnosis.search._by_chance import most_by_chance
-from hil.analysis.diagnosis.search._screen import screen
+from hil.analysis.diagnosis.data.noise import noise_levels
+from hil.analysis.diagnosis.data.trace import trace_of
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.fit import fit
+from hil.analysis.diagnosis.fit.problem import Problem, problem_of
+from hil.analysis.diagnosis.search.by_chance import most_by_chance
+from hil.analysis.diagnosis.search.screen import screen
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import Model
 from hil.core.recording import Recording

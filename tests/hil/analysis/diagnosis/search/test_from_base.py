@@ -5,18 +5,18 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import Fit, fit
-from hil.analysis.diagnosis.search._from_base import (
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.fit import Fit, fit
+from hil.analysis.diagnosis.search.from_base import (
     _far_from_noise,
     _leads_elsewhere,
-    _told,
+    _stated,
     is_far,
     moved,
     search_from_base,
 )
-from hil.analysis.diagnosis.search._race import Step
-from hil.analysis.diagnosis.search._search import advanced, begun
+from hil.analysis.diagnosis.search.race import Step
+from hil.analysis.diagnosis.search.search import advanced, begin_search
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, left, one_problem
@@ -50,7 +50,7 @@ def test_numbers_come_before_care_where_what_wins_a_race_is_far_from_the_noise(
     beyond: float, far: bool
 ) -> None:
     problem = one_problem(OFFSET)
-    near = begun(problem, fit(problem, Hypothesis(MODEL), rounds=0))
+    near = begin_search(problem, fit(problem, Hypothesis(MODEL), rounds=0))
     winner = left(beyond * problem.rows, OFFSET)
     assert _far_from_noise(near, [Step(near.base, [], [winner])]) is far
 
@@ -66,12 +66,12 @@ def test_an_effect_is_found_behind_far_numbers() -> None:
 def test_what_a_search_has_tried_is_not_tried_again_for_an_effect_that_explains_far_less() -> None:
     friction = EffectUse("coulomb_friction", {"torque_nm": 3.0})
     problem = one_problem(friction)
-    found = begun(problem, fit(problem, Hypothesis(MODEL, far=True)))
+    found = begin_search(problem, fit(problem, Hypothesis(MODEL, far=True)))
     advanced(found, silent)
     assert found.best.hypothesis.ids == ("coulomb_friction",)
     assert _leads_elsewhere(found, [found.best])
     assert not _leads_elsewhere(found, [fit(problem, Hypothesis(MODEL, (OFFSET,)), rounds=0)])
-    assert _leads_elsewhere(begun(problem, found.base), [])
+    assert _leads_elsewhere(begin_search(problem, found.base), [])
 
 
 def off(**by: float) -> Fit:
@@ -98,7 +98,7 @@ def test_far_are_many_numbers_and_not_one() -> None:
 def test_dead_time_that_a_near_model_lacks_has_a_name_of_its_own() -> None:
     own = MODEL.parameters["torque_delay"]
     late, early = (
-        _told(off(torque_delay=by, gear_ratio=0.1), ["torque_delay", "gear_ratio"]) for by in (0.5, -0.5)
+        _stated(off(torque_delay=by, gear_ratio=0.1), ["torque_delay", "gear_ratio"]) for by in (0.5, -0.5)
     )
     assert [use.id for use in late] == ["dead_time", "parameter_mismatch"]
     assert late[0].values["extra_delay_s"] == pytest.approx(own * (np.exp(0.5) - 1.0))

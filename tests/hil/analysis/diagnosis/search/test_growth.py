@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import fit
-from hil.analysis.diagnosis.search._evidence import Evidence
-from hil.analysis.diagnosis.search._growth import grow
-from hil.analysis.diagnosis.search._race import Step
-from hil.analysis.diagnosis.search._screen import Score
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.fit import fit
+from hil.analysis.diagnosis.search.evidence import Evidence
+from hil.analysis.diagnosis.search.growth import grow
+from hil.analysis.diagnosis.search.race import Step
+from hil.analysis.diagnosis.search.screen import Score
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem

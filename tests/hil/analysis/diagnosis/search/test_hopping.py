@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import fit
-from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.search._growth import _past_false_minima
-from hil.analysis.diagnosis.search._hopping import hopped
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.fit import fit
+from hil.analysis.diagnosis.fit.problem import Problem
+from hil.analysis.diagnosis.search.growth import _past_false_minima
+from hil.analysis.diagnosis.search.hopping import hopped
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem

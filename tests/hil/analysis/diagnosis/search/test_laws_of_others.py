@@ -2,12 +2,12 @@
 
 import pytest
 
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import Fit, fit
-from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.search._evidence import Evidence
-from hil.analysis.diagnosis.search._forms import by_other_laws
-from hil.analysis.diagnosis.search._optional import refined
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.fit import Fit, fit
+from hil.analysis.diagnosis.fit.problem import Problem
+from hil.analysis.diagnosis.search.evidence import Evidence
+from hil.analysis.diagnosis.search.forms import by_other_laws
+from hil.analysis.diagnosis.search.optional import refined
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem

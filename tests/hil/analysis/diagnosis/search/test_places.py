@@ -5,14 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._noise import noise_levels
-from hil.analysis.diagnosis.data._trace import trace_of
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._covariance import standard_errors
-from hil.analysis.diagnosis.fit._fit import Fit, fit
-from hil.analysis.diagnosis.fit._problem import Problem, problem_of
-from hil.analysis.diagnosis.search._evidence import Evidence
-from hil.analysis.diagnosis.search._places import placed
+from hil.analysis.diagnosis.data.noise import noise_levels
+from hil.analysis.diagnosis.data.trace import trace_of
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.covariance import standard_errors
+from hil.analysis.diagnosis.fit.fit import Fit, fit
+from hil.analysis.diagnosis.fit.problem import Problem, problem_of
+from hil.analysis.diagnosis.search.evidence import Evidence
+from hil.analysis.diagnosis.search.places import placed
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import EffectUse
 from hil.core.recording import Recording

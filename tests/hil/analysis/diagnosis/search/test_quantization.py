@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import fit
-from hil.analysis.diagnosis.search._quantization import rounding_of
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.fit import fit
+from hil.analysis.diagnosis.search.quantization import rounding_of
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem

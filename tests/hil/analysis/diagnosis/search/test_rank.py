@@ -2,8 +2,8 @@
 
 import pytest
 
-from hil.analysis.diagnosis.search._rank import price, rank
-from hil.analysis.diagnosis.search._thresholds import DOUBT, FAR, PRICE
+from hil.analysis.diagnosis.search.evidence import price, rank
+from hil.analysis.diagnosis.search.thresholds import DOUBT, FAR, PRICE
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import left

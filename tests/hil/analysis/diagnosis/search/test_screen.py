@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._noise import noise_levels
-from hil.analysis.diagnosis.data._trace import trace_of
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import fit
-from hil.analysis.diagnosis.fit._problem import problem_of
-from hil.analysis.diagnosis.search._probes import probes
-from hil.analysis.diagnosis.search._screen import _near, _scored, mismatch_columns, probe_columns, screen
+from hil.analysis.diagnosis.data.noise import noise_levels
+from hil.analysis.diagnosis.data.trace import trace_of
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.fit import fit
+from hil.analysis.diagnosis.fit.problem import problem_of
+from hil.analysis.diagnosis.search.probes import probes
+from hil.analysis.diagnosis.search.screen import _near, _scored, mismatch_columns, probe_columns, screen
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording

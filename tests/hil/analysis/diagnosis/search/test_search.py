@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._noise import noise_levels
-from hil.analysis.diagnosis.data._trace import trace_of
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import fit
-from hil.analysis.diagnosis.fit._problem import problem_of
-from hil.analysis.diagnosis.search._race import Step, grown, race
-from hil.analysis.diagnosis.search._screen import Score
-from hil.analysis.diagnosis.search._search import begun, earned, finished, following, search, worth_care
-from hil.analysis.diagnosis.search._thresholds import FAR
+from hil.analysis.diagnosis.data.noise import noise_levels
+from hil.analysis.diagnosis.data.trace import trace_of
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.fit import fit
+from hil.analysis.diagnosis.fit.problem import problem_of
+from hil.analysis.diagnosis.search.race import Step, grown, race
+from hil.analysis.diagnosis.search.screen import Score
+from hil.analysis.diagnosis.search.search import begin_search, earned, finished, following, search, worth_care
+from hil.analysis.diagnosis.search.thresholds import FAR
 from hil.core.channels import OUTPUTS, TIME
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, left, one_problem, recorded
@@ -119,7 +119,7 @@ def test_what_was_left_out_for_an_effect_that_is_not_found_is_judged_after_all()
     whole = problem_of(traces, noise_levels(one_problem().traces), MODEL.parameters["gear_ratio"])
     blocks = len(traces[0].measured)
     half = whole.judging([np.arange(blocks) > blocks // 2])
-    found = begun(half, fit(half, Hypothesis(MODEL)))
+    found = begin_search(half, fit(half, Hypothesis(MODEL)))
     assert found.settled  # with nothing named: this would be the answer
     told: list[str] = []
     after = finished(found, told.append)

@@ -7,11 +7,11 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
-from hil.analysis.diagnosis.data._sanity import examine
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._problem import problem_of
-from hil.analysis.diagnosis.search._tracking import _smoothed, _Windows, track
+from hil.analysis.diagnosis.data.noise import noise_levels, usable_noise
+from hil.analysis.diagnosis.data.sanity import examine
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.problem import problem_of
+from hil.analysis.diagnosis.search.tracking import _smoothed, _Windows, track
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.degenerate import MODEL, recording

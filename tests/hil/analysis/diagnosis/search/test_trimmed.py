@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import fit
-from hil.analysis.diagnosis.search._foretold import _blocks_of_window, _with_aftermath
-from hil.analysis.diagnosis.search._trimmed import trimmed
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.fit import fit
+from hil.analysis.diagnosis.search.predictable import _blocks_of_window, _with_aftermath
+from hil.analysis.diagnosis.search.trimmed import trimmed
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
 
 

@@ -5,10 +5,10 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.fit._errors import Errors
-from hil.analysis.diagnosis.fit._fit import Fit
-from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.search._wandering import with_wandering
+from hil.analysis.diagnosis.fit.errors import Errors
+from hil.analysis.diagnosis.fit.fit import Fit
+from hil.analysis.diagnosis.fit.problem import Problem
+from hil.analysis.diagnosis.search.wandering import with_wandering
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import left, one_problem
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.search._width import width_of, window_errors, with_likely_width
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.search.places import width_of, window_errors, with_likely_width
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL
 from tests.hil.analysis.diagnosis.played import supposed, with_play

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.tell._apart import apart
+from hil.analysis.diagnosis.tell.apart import apart
 from hil.core.model import EffectUse, Model
 from hil.plant import simulate
 from tests.hil.analysis.diagnosis.reference_plant import BASE

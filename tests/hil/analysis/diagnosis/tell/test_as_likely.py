@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._covariance import standard_errors
-from hil.analysis.diagnosis.search._search import search
-from hil.analysis.diagnosis.tell._as_likely import as_likely
-from hil.analysis.diagnosis.tell._consequences import consequences
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.covariance import standard_errors
+from hil.analysis.diagnosis.search.search import search
+from hil.analysis.diagnosis.tell.apart import as_likely
+from hil.analysis.diagnosis.tell.consequences import consequences
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
 
 

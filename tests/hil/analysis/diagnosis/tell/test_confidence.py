@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.search._search import Found, search
-from hil.analysis.diagnosis.tell._confidence import (
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.search.search import Found, search
+from hil.analysis.diagnosis.tell.confidence import (
     _experiment,
     alternatives_of,
     confidence_of,

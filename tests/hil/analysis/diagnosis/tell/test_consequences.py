@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from hil.analysis.diagnosis.tell._consequences import consequences, why_no_step
-from hil.analysis.diagnosis.tell._result import derived_of
+from hil.analysis.diagnosis.tell.consequences import consequences, why_no_step
+from hil.analysis.diagnosis.tell.result import derived_of
 from hil.core.model import EffectUse, Model
 from hil.plant import Start, simulate
 from tests.hil.analysis.diagnosis.one_recording import MODEL

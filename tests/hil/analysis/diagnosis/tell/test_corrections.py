@@ -2,19 +2,19 @@
 
 import pytest
 
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._covariance import standard_errors
-from hil.analysis.diagnosis.fit._fit import fit
-from hil.analysis.diagnosis.search._search import begun
-from hil.analysis.diagnosis.tell._corrections import (
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.covariance import standard_errors
+from hil.analysis.diagnosis.fit.fit import fit
+from hil.analysis.diagnosis.search.search import begin_search
+from hil.analysis.diagnosis.tell.corrections import (
     as_corrections,
     is_correction,
     started,
     suiting_a_gap,
     updates,
 )
-from hil.analysis.diagnosis.tell._result import NamedEffect
-from hil.analysis.diagnosis.tell._words import Where
+from hil.analysis.diagnosis.tell.result import NamedEffect
+from hil.analysis.diagnosis.tell.words import Where
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
@@ -24,7 +24,9 @@ INERTIA = MODEL.parameters["motor_inertia"]
 
 def test_a_number_that_noise_does_not_explain_is_told_as_it_was_and_is() -> None:
     problem = one_problem()
-    found = begun(problem, fit(problem, Hypothesis(MODEL.with_parameters(motor_inertia=0.985 * INERTIA))))
+    found = begin_search(
+        problem, fit(problem, Hypothesis(MODEL.with_parameters(motor_inertia=0.985 * INERTIA)))
+    )
     told = updates(found, found.base, standard_errors(problem, found.base))
     old, new, error = told["motor_inertia"]
     assert old == pytest.approx(0.985 * INERTIA)
@@ -35,7 +37,7 @@ def test_a_number_that_noise_does_not_explain_is_told_as_it_was_and_is() -> None
 @pytest.mark.parametrize(("by", "small"), [(1.01, True), (1.1, False)])
 def test_within_its_tolerance_a_wrong_number_is_no_finding(by: float, small: bool) -> None:
     problem = one_problem()
-    found = begun(problem, fit(problem, Hypothesis(MODEL)))
+    found = begin_search(problem, fit(problem, Hypothesis(MODEL)))
     wrong = EffectUse("parameter_mismatch", {"parameter": "motor_inertia", "value": by * INERTIA})
     assert is_correction(found, wrong, found.base) is small
 

@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.tell._drift import drifts
+from hil.analysis.diagnosis.fit.problem import Problem
+from hil.analysis.diagnosis.tell.drift import drifts
 from hil.core.channels import OUTPUTS
 from tests.hil.analysis.diagnosis.one_recording import NOISE, one_problem
 

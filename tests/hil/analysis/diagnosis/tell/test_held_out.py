@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data._gap import ChannelGap
-from hil.analysis.diagnosis.tell._held_out import Event, HeldOut, furthest
-from hil.analysis.diagnosis.tell._result import Verdict
+from hil.analysis.diagnosis.data.gap import ChannelGap
+from hil.analysis.diagnosis.tell.held_out import Event, HeldOut, furthest
+from hil.analysis.diagnosis.tell.result import Verdict
 from hil.core.channels import OUTPUTS
 from tests.hil.analysis.diagnosis.one_recording import NOISE, one_trace
 

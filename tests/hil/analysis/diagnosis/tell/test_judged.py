@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from hil.analysis.diagnosis.data._noise import noise_levels
-from hil.analysis.diagnosis.data._sanity import Examined
-from hil.analysis.diagnosis.data._trace import trace_of
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import fit
-from hil.analysis.diagnosis.fit._problem import problem_of
-from hil.analysis.diagnosis.search._search import begun, search
-from hil.analysis.diagnosis.tell._given_back import NUMBERS_TRADE
-from hil.analysis.diagnosis.tell._judged import Judged
-from hil.analysis.diagnosis.tell._result import NamedEffect
+from hil.analysis.diagnosis.data.noise import noise_levels
+from hil.analysis.diagnosis.data.sanity import Examined
+from hil.analysis.diagnosis.data.trace import trace_of
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.fit import fit
+from hil.analysis.diagnosis.fit.problem import problem_of
+from hil.analysis.diagnosis.search.search import begin_search, search
+from hil.analysis.diagnosis.tell.given_back import NUMBERS_TRADE
+from hil.analysis.diagnosis.tell.judged import Judged
+from hil.analysis.diagnosis.tell.result import NamedEffect
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
@@ -46,7 +46,7 @@ def test_beside_a_law_that_leaves_more_than_noise_a_wrong_number_is_a_correction
     inertia = MODEL.parameters["motor_inertia"]
     base = Hypothesis(MODEL.with_parameters(motor_inertia=0.9 * inertia))
     mismatch = EffectUse("parameter_mismatch", {"parameter": "motor_inertia", "value": inertia})
-    found = begun(problem, fit(problem, base))
+    found = begin_search(problem, fit(problem, base))
     found.best = fit(problem, base.with_term(friction).with_term(mismatch), found.base.starts)
     assert found.evidence.closed(found.best) is not more
     told = Judged(problem, found, "named", NOTHING_HELD).diagnosis([], [], 1.0)
@@ -64,7 +64,7 @@ def test_without_a_name_numbers_that_trade_one_channel_for_another_are_not_taken
     levels = noise_levels(traces)
     problem = problem_of(traces, levels, MODEL.parameters["gear_ratio"])
     fitted = fit(problem, Hypothesis(MODEL))
-    told = Judged(problem, begun(problem, fitted), "unknown", NOTHING_HELD).diagnosis([], [], 1.0)
+    told = Judged(problem, begin_search(problem, fitted), "unknown", NOTHING_HELD).diagnosis([], [], 1.0)
     assert NUMBERS_TRADE in told.notes
     assert told.model.parameters == MODEL.parameters
     assert (told.parameter_updates, told.worse) == ({}, ())
@@ -79,7 +79,7 @@ def held(problem, *effects: EffectUse) -> Examined:
 def test_none_is_not_said_while_recordings_held_out_disagree() -> None:
     """What only they show, here an offset that the fitted ones have not, is a gap like any other."""
     problem = one_problem()
-    found = begun(problem, fit(problem, Hypothesis(MODEL)))
+    found = begin_search(problem, fit(problem, Hypothesis(MODEL)))
     calm = Judged(problem, found, "none", held(problem)).diagnosis([], [], 1.0)
     assert (calm.verdict, calm.held_out_open, calm.signature) == ("none", (), "")
     told = Judged(problem, found, "none", held(problem, OFFSET)).diagnosis([], [], 1.0)

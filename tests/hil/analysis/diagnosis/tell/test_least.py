@@ -2,7 +2,7 @@
 
 import pytest
 
-from hil.analysis.diagnosis.tell._least import belongs_to_filter, worth_naming
+from hil.analysis.diagnosis.tell.named import belongs_to_filter, worth_naming
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_trace

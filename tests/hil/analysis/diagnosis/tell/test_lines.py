@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.fit._errors import Errors
-from hil.analysis.diagnosis.fit._fit import Fit
-from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.tell._lines import line_in_words, speeds_differ
+from hil.analysis.diagnosis.fit.errors import Errors
+from hil.analysis.diagnosis.fit.fit import Fit
+from hil.analysis.diagnosis.fit.problem import Problem
+from hil.analysis.diagnosis.tell.drift import line_in_words, speeds_differ
 from tests.hil.analysis.diagnosis.one_recording import left, one_problem
 
 SHAFT = 2

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.search._race import Step
-from hil.analysis.diagnosis.search._search import search
-from hil.analysis.diagnosis.search._thresholds import LEAST_EVIDENCE
-from hil.analysis.diagnosis.tell._named import clean, considered, lasting, reduced
-from hil.analysis.diagnosis.tell._result import NamedEffect
-from hil.analysis.diagnosis.tell._words import Where
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.search.race import Step
+from hil.analysis.diagnosis.search.search import search
+from hil.analysis.diagnosis.search.thresholds import LEAST_EVIDENCE
+from hil.analysis.diagnosis.tell.named import clean, considered, lasting, reduced
+from hil.analysis.diagnosis.tell.result import NamedEffect
+from hil.analysis.diagnosis.tell.words import Where
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse

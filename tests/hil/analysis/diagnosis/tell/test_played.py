@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.tell._played import played
+from hil.analysis.diagnosis.tell.apart import played
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from hil.plant import Start, gear_ratio_of, simulate

@@ -3,7 +3,7 @@
 import json
 
 from hil.analysis.diagnosis import diagnose
-from hil.analysis.diagnosis.tell._result import derived_of
+from hil.analysis.diagnosis.tell.result import derived_of
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, recorded

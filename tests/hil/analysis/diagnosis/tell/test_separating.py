@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.tell._separating import _WORDS, _outputs, _test, separating_plan
+from hil.analysis.diagnosis.tell.separating import _WORDS, _outputs, _test, separating_plan
 from hil.core.channels import OUTPUTS, unit_of
 from hil.core.model import EffectUse, Model, save_model
 from hil.core.recording import driven_by_torque, read_recording, write_recording

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.tell._verdict import open_channels, verdict_on, verdict_without_effects
+from hil.analysis.diagnosis.tell.verdict import open_channels, verdict_on, verdict_without_effects
 
 LAG = ("actuator_lag",)
 

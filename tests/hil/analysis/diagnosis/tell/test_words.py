@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from hil.analysis.diagnosis.data._gap import CONDITIONS, GapMap, gap_map
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import Fit, fit
-from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.fit._simulated import simulated_samples
-from hil.analysis.diagnosis.tell._words import _dependence, signature, where
+from hil.analysis.diagnosis.data.gap import CONDITIONS, GapMap, gap_map
+from hil.analysis.diagnosis.fit.coordinates import Hypothesis
+from hil.analysis.diagnosis.fit.fit import Fit, fit
+from hil.analysis.diagnosis.fit.problem import Problem
+from hil.analysis.diagnosis.fit.simulated import simulated_samples
+from hil.analysis.diagnosis.tell.words import _dependence, signature, where
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, NOISE, one_problem

@@ -1,0 +1,146 @@
+"""How far simulation and measurement are apart: per channel, band, recording and operating condition."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis.data.thresholds import (
+    HIGH_SPEED,
+    LARGE_TORQUE,
+    REVERSAL_S,
+    STANDSTILL_SHARE,
+    WORSE,
+    WORSE_NOISES,
+)
+from hil.analysis.diagnosis.data.trace import Trace
+from hil.core.channels import OUTPUTS
+from hil.core.errors.wording import factor, multiple
+
+Array = npt.NDArray[np.float64]
+
+BANDS_HZ = ((0.0, 1.0), (1.0, 3.0), (3.0, 6.0), (6.0, 10.0), (10.0, 15.0), (15.0, 30.0), (30.0, 125.0))
+CONDITIONS = ("near standstill", "torque reversals", "large torque", "high speed", "elsewhere")
+
+
+@dataclass(frozen=True)
+class ChannelGap:
+    """Ratios to the rms of the measured channel around its mean."""
+
+    gap: float
+    noise_floor: float
+
+    @property
+    def noises(self) -> float:
+        """The gap over the noise floor."""
+        return self.gap / max(self.noise_floor, 1e-12)
+
+
+@dataclass(frozen=True)
+class GapMap:
+    """Error over noise (1: nothing but noise): recordings x channels x bands, and conditions x channels.
+
+    NaN where a channel was not measured.
+    """
+
+    recordings: tuple[str, ...]
+    by_band: Array
+    by_condition: Array
+
+
+def channel_gaps(traces: Sequence[Trace], floor: Array, simulated: Sequence[Array]) -> dict[str, ChannelGap]:
+    """Gap and noise floor of each measured channel over the recordings together.
+
+    Args:
+        floor: standard deviation of each channel's noise per sample, shape (3,).
+        simulated: channels of each recording at full rate, n x 3.
+    """
+    gaps = {}
+    for column, channel in enumerate(OUTPUTS):
+        pairs = [
+            (t.samples[t.judged_samples, column], s[t.judged_samples, column])
+            for t, s in zip(traces, simulated, strict=True)
+            if t.has[column]
+        ]
+        if not pairs:
+            continue
+        measured = np.concatenate([m for m, _ in pairs])
+        if not len(measured):  # nothing of it is judged
+            gaps[channel] = ChannelGap(np.nan, np.nan)
+            continue
+        error = measured - np.concatenate([s for _, s in pairs])
+        spread = max(float(np.std(measured)), 1e-12)
+        rms = float(np.sqrt(np.mean(error**2)))
+        gaps[channel] = ChannelGap(rms / spread, float(floor[column]) / spread)
+    return gaps
+
+
+def gap_map(traces: Sequence[Trace], noise: Array, simulated: Sequence[Array]) -> GapMap:
+    """Where the error stands above `noise`, the standard deviation of each channel per sample, shape (3,)."""
+    bands = np.full((len(traces), 3, len(BANDS_HZ)), np.nan)
+    sums, counts = np.zeros((2, len(CONDITIONS), 3))
+    for row, (trace, values) in enumerate(zip(traces, simulated, strict=True)):
+        counted = trace.judged_samples
+        error = np.where(counted[:, None], (trace.samples - values) / noise, 0.0)
+        masks = conditions_of(trace.samples, trace.torque, trace.dt) * counted
+        whole = np.sqrt(len(counted) / max(int(np.count_nonzero(counted)), 1))
+        for column in np.flatnonzero(trace.has):
+            bands[row, column] = whole * _band_ratios(error[:, column], trace.dt)
+            sums[:, column] += masks @ error[:, column] ** 2
+            counts[:, column] += masks.sum(axis=1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        condition = np.sqrt(sums / counts)
+    return GapMap(tuple(t.name for t in traces), bands, condition)
+
+
+def made_worse(before: GapMap, after: GapMap) -> list[str]:
+    """In words where the error grew: channel, band and recording, worst first."""
+    grown = np.nan_to_num(after.by_band) > np.maximum(WORSE_NOISES, WORSE * np.nan_to_num(before.by_band))
+    places = sorted(np.argwhere(grown).tolist(), key=lambda place: -after.by_band[tuple(place)])
+    words = []
+    for row, column, band in places:
+        low, high = BANDS_HZ[band]
+        old, new = before.by_band[row, column, band], after.by_band[row, column, band]
+        words.append(
+            f"{OUTPUTS[column]} at {low:g}-{high:g} Hz in {before.recordings[row]}: "
+            f"from {factor(old)} to {multiple(new)} the noise"
+        )
+    return words
+
+
+def _band_ratios(error: Array, dt: float) -> Array:
+    power = np.abs(np.fft.rfft(error)) ** 2 / len(error)
+    frequency = np.fft.rfftfreq(len(error), dt)
+    ratios = np.full(len(BANDS_HZ), np.nan)
+    for index, (low, high) in enumerate(BANDS_HZ):
+        inside = (frequency >= low) & (frequency < high)
+        if inside.any():
+            ratios[index] = np.sqrt(np.mean(power[inside]))
+    return ratios
+
+
+def conditions_of(samples: Array, torque: Array, dt: float) -> Array:
+    """Which samples belong to each of `CONDITIONS`, as 0/1, conditions x samples; each to one alone."""
+    speed = np.abs(np.where(np.isfinite(samples[:, 0]), samples[:, 0], samples[:, 1]))
+    fastest = max(float(np.max(np.nan_to_num(speed), initial=0.0)), 1e-9)
+    largest = max(float(np.max(np.abs(torque))), 1e-9)
+    flips = np.flatnonzero(np.diff(np.sign(torque)) != 0)
+    near_flip = np.zeros(len(torque))
+    near_flip[flips] = 1.0
+    reach = max(1, round(REVERSAL_S / dt))
+    after = np.convolve(near_flip, np.ones(reach))[: len(torque)] > 0
+    masks = [
+        speed < STANDSTILL_SHARE * fastest,
+        after,
+        np.abs(torque) > LARGE_TORQUE * largest,
+        speed > HIGH_SPEED * fastest,
+    ]
+    left = np.ones(len(torque), bool)
+    rows = []
+    for mask in masks:
+        rows.append(mask & left)
+        left &= ~mask
+    return np.array([*rows, left], dtype=float)

@@ -1,0 +1,326 @@
+"""A recording made ready for fits: even samples, block means, noise level, a first guess of its start."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis.data.spikes import without_spikes
+from hil.analysis.diagnosis.data.thresholds import (
+    EXCERPTS,
+    FIRST_STAMPS,
+    FIT_RATE_HZ,
+    GAP_SAMPLES,
+    LEAST_DURATION_S,
+    LEAST_SAMPLES,
+    LITTLE_TORQUE,
+    MOST_SAMPLES,
+    NEAR_SHARE,
+    SLOWEST_SAMPLE_S,
+    START_SAMPLES,
+    UNEVEN_SHARE,
+)
+from hil.core.channels import CHANNELS, INPUT, OUTPUTS, TIME, WHEEL_ANGLE
+from hil.core.errors import BadInputError
+from hil.core.errors.wording import closest
+from hil.core.recording import Recording
+from hil.plant import SENSOR_GAIN, SENSOR_OFFSET
+
+Array = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One recording on an even grid.
+
+    `measured` is blocks x 3 in the order of `OUTPUTS` (NaN where a channel is missing), each the mean of
+    `block` samples; `samples` is the same at full rate; `start` is motor speed, wheel speed (rad/s) and
+    shaft torque (N m) at first, means of `start_samples`, NaN where not measured. `source` is the file, for
+    messages. `judged` says of each block whether errors count there; everywhere if None. `load` is the torque
+    in N m that brakes the wheels at every sample; None where the model takes none. In the first `lead`
+    samples of a recording that begins in motion errors do not count: torque asked for before acts there.
+    """
+
+    name: str
+    torque: Array
+    dt: float
+    block: int
+    samples: Array
+    measured: Array
+    start: Array
+    notes: tuple[str, ...]
+    first_wheel_angle_rad: float = 0.0
+    source: str = ""
+    judged: Flags | None = None
+    load: Array | None = None
+    lead: int = 0
+    start_samples: int = START_SAMPLES
+
+    def angles(self, gear_ratio: float, sensors: Array | None = None) -> Array:
+        """Wheel and rotor angle in rad at every sample, n x 2, integrated from the measured speeds.
+
+        Where no speed was measured they stay at zero: no order can be seen. Gain and offset of `sensors`
+        (as of `ideal_sensors`) are taken out.
+        """
+        motor, wheel = np.nan_to_num(self.samples[:, 0]), np.nan_to_num(self.samples[:, 1])
+        if sensors is not None:
+            motor, wheel = (
+                (v - row[SENSOR_OFFSET]) / row[SENSOR_GAIN]
+                for v, row in zip((motor, wheel), sensors, strict=False)
+            )
+        if not self.has[1]:
+            wheel = motor / gear_ratio
+        if not self.has[0]:
+            motor = wheel * gear_ratio
+        speeds = np.column_stack([wheel, motor])
+        turned = np.cumsum(0.5 * self.dt * (speeds[1:] + speeds[:-1]), axis=0)
+        first = self.first_wheel_angle_rad * np.array([1.0, gear_ratio])
+        return np.asarray(first + np.concatenate([np.zeros((1, 2)), turned]), dtype=float)
+
+    @property
+    def has(self) -> Flags:
+        """Which of the three channels were measured."""
+        return np.asarray(np.isfinite(self.measured[0]))
+
+    @property
+    def judged_blocks(self) -> Flags:
+        """Of each block whether errors count there."""
+        judged = np.ones(len(self.measured), bool) if self.judged is None else self.judged.copy()
+        judged[: self.lead_blocks] = False
+        return judged
+
+    @property
+    def lead_blocks(self) -> int:
+        """How many blocks `lead` reaches into."""
+        return -(-self.lead // self.block)
+
+    @property
+    def judged_samples(self) -> Flags:
+        """The same of each sample; what does not fill a block counts as the last block does."""
+        every = np.repeat(self.judged_blocks, self.block)
+        return np.pad(every, (0, len(self.samples) - len(every)), mode="edge")
+
+    @property
+    def block_time_s(self) -> Array:
+        """Time of each block's middle from the start of the recording, s."""
+        middles = np.arange(len(self.measured)) * self.block + 0.5 * (self.block - 1)
+        return np.asarray(middles * self.dt, dtype=float)
+
+
+def unbroken(recording: Recording, load: str = "") -> list[Recording]:
+    """The stretches of a recording between its gaps: no one knows what happened in a gap.
+
+    Stretches too short for a diagnosis are left out; the first one's notes say what was cut.
+
+    Args:
+        load: the channel whose torque brakes the wheels, where the model takes one.
+
+    Raises:
+        BadInputError: no stretch is long enough.
+    """
+    if recording.samples < 2:
+        return [recording]
+    gaps = _gaps(recording, {INPUT, *OUTPUTS, load})
+    if not gaps:
+        return [recording]
+    behind = np.maximum.accumulate([gap.after for gap in gaps]).tolist()
+    pieces = [
+        _piece(recording, first, last)
+        for first, last in zip([0, *behind], [*(gap.begins for gap in gaps), recording.samples], strict=True)
+        if last - first >= LEAST_SAMPLES
+        and recording.time_at(last - 1) - recording.time_at(first) >= LEAST_DURATION_S
+    ]
+    if not pieces:
+        raise BadInputError(
+            f"has {len(gaps)} gaps, and no {LEAST_SAMPLES} samples without one between them",
+            where=str(recording.source),
+            fix="record again without gaps",
+        )
+    left_out = len(gaps) + 1 - len(pieces)
+    longest = max(gaps, key=lambda gap: gap.lasts_s)
+    note = f"cut at gaps: {len(gaps)}, the longest of {longest.lasts_s:.3g} s at {longest.start_s:.4g} s"
+    pieces[0].notes.append(note + (f"; short stretches left out: {left_out}" if left_out else ""))
+    return pieces
+
+
+@dataclass(frozen=True)
+class _Gap:
+    """A pause between two samples, or samples that lack a channel: `begins` to `after` are left out."""
+
+    start_s: float
+    lasts_s: float
+    begins: int
+    after: int
+
+
+def _gaps(recording: Recording, counting: set[str]) -> list[_Gap]:
+    gaps = [*_pauses(recording), *_holes(recording, counting)]
+    return sorted(gaps, key=lambda gap: (gap.begins, gap.after))
+
+
+def _holes(recording: Recording, counting: set[str]) -> list[_Gap]:
+    """Where a channel that counts was interpolated for longer than a straight line can stand for it."""
+    missing = np.zeros(recording.samples, bool)
+    for channel in recording.mended.keys() & counting:
+        at = recording.mended[channel]
+        for run in np.split(at, np.flatnonzero(np.diff(at) > 1) + 1):
+            if len(run) > GAP_SAMPLES:
+                missing[run] = True
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], missing, [False]]))).reshape(-1, 2).tolist()
+    dt = recording.sample_time_s
+    return [_Gap(recording.time_at(begins), (after - begins) * dt, begins, after) for begins, after in edges]
+
+
+def _pauses(recording: Recording) -> list[_Gap]:
+    gaps = []
+    last_s = np.zeros(0)
+    for first, rows in recording.blocks((TIME,)):
+        time = np.concatenate([last_s, rows[TIME]])
+        steps = np.diff(time)
+        for at in np.flatnonzero(steps > GAP_SAMPLES * recording.sample_time_s).tolist():
+            after = first - len(last_s) + at + 1
+            gaps.append(_Gap(float(time[at]), float(steps[at]), after, after))
+        last_s = time[-1:]
+    return gaps
+
+
+def excerpts(recording: Recording) -> list[Recording]:
+    """The recording, or where it is very long ten stretches spread evenly over it; the first's notes say so.
+
+    Ten stretches rather than every tenth sample: what torque does between samples must be known.
+    """
+    count = recording.samples
+    if count <= MOST_SAMPLES:
+        return [recording]
+    size = MOST_SAMPLES // EXCERPTS
+    firsts = np.linspace(0, count - size, EXCERPTS).round().astype(int).tolist()
+    pieces = [_piece(recording, first, first + size) for first in firsts]
+    seconds = size * recording.sample_time_s
+    pieces[0].notes.append(
+        f"has {count} samples: {EXCERPTS} stretches of {seconds:.4g} s, spread evenly over its "
+        f"{recording.last_s - recording.first_s:.5g} s, stand for it"
+    )
+    return pieces
+
+
+def _piece(recording: Recording, first: int, last: int) -> Recording:
+    """Samples `first` to `last` as a recording that is named after the time it begins at."""
+    began = f" from {recording.time_at(first):.4g} s" if first else ""
+    source = recording.source.with_name(f"{recording.source.stem}{began}{recording.source.suffix}")
+    notes = list(recording.notes) if first == 0 else []
+    return dataclasses.replace(recording.piece(first, last), source=source, notes=notes)
+
+
+def trace_of(recording: Recording, name: str = "", load: Array | None = None) -> Trace:
+    """Put readings on even times, each as it is; interpolate only where none is near; average to blocks.
+
+    Args:
+        load: torque in N m that brakes the wheels, at the recording's time stamps.
+
+    Raises:
+        BadInputError: too few samples, too short, or sampled too slowly to see a driveline.
+    """
+    where = str(recording.source)
+    time, dt = recording.time_s, recording.sample_time_s
+    if len(time) < LEAST_SAMPLES:
+        raise BadInputError(f"has {len(time)} samples, a diagnosis needs {LEAST_SAMPLES}", where=where)
+    if dt > SLOWEST_SAMPLE_S:
+        raise BadInputError(
+            f"is sampled every {dt * 1e3:g} ms: too slow for a driveline",
+            where=where,
+            fix="record at 100 Hz or more, best at 1 kHz; or is time_s in another unit?",
+        )
+    lasts = float(time[-1] - time[0])
+    if lasts < LEAST_DURATION_S:
+        raise BadInputError(
+            f"lasts {lasts:.3g} s, a diagnosis needs {LEAST_DURATION_S:g} s",
+            where=where,
+            fix="record longer; or is time_s in another unit?",
+        )
+    notes = [*recording.notes, *_not_used(recording)]
+    grid, dt = _even(time, dt)
+    nearest = _nearest(time, grid)
+    off = np.abs(time[nearest] - grid)
+    if off.max() > UNEVEN_SHARE * dt:
+        note = f"time stamps are uneven: put on a grid of {dt * 1e3:.4g} ms"
+        if (gap := np.diff(time)).max() > GAP_SAMPLES * dt:
+            note += f", with a gap of {gap.max():.3g} s at {time[int(np.argmax(gap))]:.3g} s bridged"
+        notes.append(note)
+    missing = off > NEAR_SHARE * dt
+    given = [c for c in OUTPUTS if c in recording]
+    columns = [recording[INPUT], *(recording[c] for c in given)]
+    on_grid = [np.where(missing, np.interp(grid, time, values), values[nearest]) for values in columns]
+    for index, channel in enumerate(given, start=1):
+        on_grid[index], note = without_spikes(on_grid[index], channel, dt)
+        notes += [note] if note else []
+    torque = np.ascontiguousarray(on_grid[0])
+    samples = np.full((len(grid), 3), np.nan)
+    samples[:, [c in given for c in OUTPUTS]] = np.column_stack([*on_grid[1:]])
+    block = max(1, round(1.0 / (FIT_RATE_HZ * dt)))
+    first = _before_torque(torque)
+    return Trace(
+        name or recording.source.stem,
+        torque,
+        dt,
+        block,
+        samples,
+        blocks(samples, block),
+        samples[:first].mean(axis=0),
+        tuple(notes),
+        float(recording[WHEEL_ANGLE][0]) if WHEEL_ANGLE in recording else 0.0,
+        where,
+        load=None if load is None else np.where(missing, np.interp(grid, time, load), load[nearest]),
+        start_samples=first,
+    )
+
+
+def _not_used(recording: Recording) -> list[str]:
+    """What to say of channels whose names are nearly those that a diagnosis looks for."""
+    strange = [name for name in recording.channels if name not in CHANNELS]
+    return [
+        f"has no {channel}, and '{near}' is not used: if it is that, rename it"
+        for channel in OUTPUTS
+        if channel not in recording and (near := closest(channel, strange))
+    ]
+
+
+def _even(time: Array, dt: float) -> tuple[Array, float]:
+    """Even times from the first to the last of `time`, about `dt` apart, and their exact distance.
+
+    The distance is a straight line through the stamps, over ever more of them: jitter and missing stamps
+    must not make the count of samples slip.
+    """
+    steps = np.diff(time)
+    near = steps[np.abs(steps - dt) < 0.5 * dt]
+    dt = float(np.mean(near)) if len(near) else dt
+    seen = FIRST_STAMPS
+    while seen < 4 * len(time):
+        passed = time[:seen] - time[0]
+        number = np.rint(passed / dt)
+        dt = float(np.polynomial.polynomial.polyfit(number, passed, 1)[1])
+        seen *= 4
+    count = max(1, round((time[-1] - time[0]) / dt))
+    return np.linspace(time[0], time[-1], count + 1), float(time[-1] - time[0]) / count
+
+
+def _nearest(time: Array, grid: Array) -> npt.NDArray[np.intp]:
+    """Index of the time stamp that lies nearest to each point of the grid."""
+    after = np.clip(np.searchsorted(time, grid), 1, len(time) - 1)
+    return np.asarray(after - (grid - time[after - 1] < time[after] - grid))
+
+
+def blocks(samples: Array, block: int) -> Array:
+    """Means of `block` rows each; what does not fill a block is left out."""
+    count = len(samples) // block
+    return np.asarray(samples[: count * block].reshape(count, block, -1).mean(axis=1))
+
+
+def _before_torque(torque: Array) -> int:
+    """How many samples there are before the torque does anything: a fed back torque is never quite zero."""
+    least = LITTLE_TORQUE * float(np.max(np.abs(torque)))
+    changed = np.flatnonzero(np.abs(torque[:START_SAMPLES] - torque[0]) > least)
+    return max(3, int(changed[0]) if changed.size else min(START_SAMPLES, len(torque)))

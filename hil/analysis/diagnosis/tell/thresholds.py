@@ -1,0 +1,215 @@
+"""Thresholds of what is stated: verdict, confidence, words, separating tests."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+from hil.analysis.diagnosis.threshold import Means
+
+HALF_MARGIN: Annotated[float, Means("evidence", "over a rival at which it is about one in ten", "blind")] = (
+    12.0
+)
+CONFIDENCE_FLOOR: Annotated[float, Means("probability", "doubt that always stays", "blind")] = 0.005
+DRAWN_MODELS: Annotated[
+    int, Means("models", "whose scatter is the uncertainty of a figure of the new model", "consequences")
+] = 40
+LEAST_TORQUE_NM: Annotated[
+    float, Means("N m", "without more in the recordings no one knows what a test may ask", "separating")
+] = 0.1
+STANDSTILL_NOISES: Annotated[
+    float, Means("noise levels", "a speed below it is no turning to either side", "confidence")
+] = 6.0
+WORTH_A_PLAN: Annotated[float, Means("probability", "a less likely rival gets no plan", "separating")] = 0.02
+CLOSED_WELL: Annotated[
+    float, Means("gap over noise floor", "below it only the least doubt stays", "blind")
+] = 1.05
+CLOSED_FAIRLY: Annotated[float, Means("gap over noise floor", "below it a name is fairly sure", "blind")] = (
+    1.2
+)
+FAIRLY_SURE: Annotated[float, Means("probability", "at most, where the gap is closed fairly", "blind")] = 0.97
+LESS_SURE: Annotated[float, Means("probability", "at most, where more is left", "blind")] = 0.9
+HALF_OPEN: Annotated[
+    float,
+    Means(
+        "probability",
+        "at most, where a channel keeps half of its gap, a third where formulas differ",
+        "verdict",
+    ),
+] = 0.6
+OPEN_CONFIDENCE: Annotated[
+    float, Means("probability", "of names that are stated where no gap was closed", "blind")
+] = 0.05
+
+STEP_NM: Annotated[float, Means("N m", "the step whose overshoot is stated", "consequences")] = 20.0
+STEP_FROM_RAD_S: Annotated[float, Means("rad/s", "wheel speed from which it is made", "consequences")] = 5.0
+LASTING: Annotated[
+    float, Means("of its peak", "must last of the shaft torque for an overshoot to be stated", "consequences")
+] = 0.1
+
+DURATION_S: Annotated[float, Means("s", "of a separating test", "separating")] = 20.0
+TELLS: Annotated[
+    float, Means("noise levels, root of the sum of squares", "a test must tell two models by", "separating")
+] = 10.0
+NUMBERS_FREE: Annotated[
+    float, Means("of a number", "by which a fit of the test's recording may change it", "separating")
+] = 0.1
+NUMBERS_STEP: Annotated[float, Means("of a number", "of the finite differences there", "separating")] = 1e-3
+SETTLE_S: Annotated[float, Means("s", "a speed is held before it", "separating")] = 2.0
+FAST_RAD_S: Annotated[
+    float, Means("rad/s, wheel side", "what every bench for an axle allows", "separating")
+] = 40.0
+SHAFT_SHARE: Annotated[
+    float,
+    Means(
+        "of the torque request times the gear ratio",
+        "shaft torque at most: a resonance gives more than its drive",
+        "separating",
+    ),
+] = 2.5
+SHARES: Annotated[
+    tuple[float, ...], Means("of the largest torque", "tried in turn until all limits are kept", "separating")
+] = (1.0, 0.6, 0.35, 0.2)
+WHEEL_RADIUS_M: Annotated[
+    float, Means("m", "typical: only the speed at which a test begins depends on it", "separating")
+] = 0.33
+SLOW_KM_H: Annotated[float, Means("km/h", "speed of a chirp", "separating")] = 12.0
+FAST_KM_H: Annotated[float, Means("km/h", "speed from which the axle coasts", "separating")] = 36.0
+
+SHUT: Annotated[
+    tuple[tuple[float, float], ...],
+    Means(
+        "share of the gap's power, gap over noise",
+        "closed from that share on if less than that is left: large effects may be closed less finely",
+        "blind",
+    ),
+] = ((0.5, 1.03), (0.95, 1.6), (0.995, math.inf))
+SHUT_BY_LAW: Annotated[
+    float,
+    Means(
+        "share of the gap's power",
+        "from it on where contact, dry friction or hysteresis is among the names: their laws are many",
+        "blind",
+    ),
+] = 0.9
+NOISELESS: Annotated[
+    float, Means("gap over noise", "above it what is left is a matter of formulas, not of noise", "blind")
+] = 100.0
+SHUT_NOISELESS: Annotated[
+    float, Means("share of the gap's power", "from it on a gap without noise is closed", "blind")
+] = 0.9
+CHANNEL_NOISES: Annotated[
+    float, Means("gap over noise floor", "up to it a channel's gap is closed", "verdict")
+] = 1.5
+EVENT_S: Annotated[
+    float,
+    Means("s", "over which a held-out recording may be far off: a limit met but once", "verdict"),
+] = 0.1
+EVENT_NOISES: Annotated[
+    float,
+    Means(
+        "noise levels",
+        "rms over that time from which on nothing explains it; noise itself never does",
+        "verdict",
+    ),
+] = 3.0
+SPOILT: Annotated[
+    float,
+    Means(
+        "of its gap before",
+        "numbers that leave a channel with more explain nothing: without a name the model stays as it came",
+        "verdict",
+    ),
+] = 1.1
+CHANNEL_SHUT: Annotated[
+    float,
+    Means(
+        "share of a channel's gap in power",
+        "from it on the channel is closed: a quarter at most is left",
+        "verdict",
+    ),
+] = 0.95
+LEFT_NOISELESS: Annotated[
+    float,
+    Means(
+        "of a channel's gap", "where formulas differ more leaves a channel open, or names unsure", "verdict"
+    ),
+] = 1.0 / 3.0
+NOT_WORSE: Annotated[
+    float, Means("times the gap before", "of a channel that no chain meets: more would be worse", "verdict")
+] = 1.1
+HALVED: Annotated[
+    float, Means("of a channel's gap", "more may not stay of any, whatever the others do", "verdict")
+] = 0.5
+UNSEEN: Annotated[
+    float, Means("gap over noise floor", "below it a channel shows no gap that could be halved", "verdict")
+] = 1.15
+MORE: Annotated[
+    float, Means("share of the gap's power", "that each further name must close besides", "blind")
+] = 0.001
+
+DRIFT_SHARE: Annotated[
+    float, Means("of the error's power above white noise", "that is slow: the channel drifts", "drift")
+] = 0.5
+DRIFTS_NOISES: Annotated[
+    float, Means("noise levels", "a drift that is stated swings further from end to end", "drift")
+] = 3.0
+SHARED: Annotated[
+    float, Means("of one speed's slow error", "less apart from the other's: the axle moved so", "drift")
+] = 0.5
+OF_A_FILTER: Annotated[
+    float,
+    Means(
+        "samples",
+        "a channel that is no earlier beside its own low-pass is a digital filter's: a correction",
+        "least",
+    ),
+] = 0.55
+TOLERANCES: Annotated[
+    float,
+    Means(
+        "times the tolerance of the model's own dead time",
+        "an extra dead time that is smaller is a correction of it",
+        "least",
+    ),
+] = 2.0
+NOTHING_SIGMAS: Annotated[
+    float, Means("standard errors", "an effect whose own number is less is named for another of its", "named")
+] = 2.0
+WORDS_SEGMENT: Annotated[int, Means("blocks", "of a spectrum that is stated in words", "words")] = 1024
+STRETCH: Annotated[
+    int, Means("blocks", "of a stretch of a recording, slow ones beside fast ones", "lines")
+] = 256
+LINE_WIDTH: Annotated[int, Means("frequencies", "lines that are no further apart are one line", "lines")] = 2
+NEIGHBOURS: Annotated[
+    int, Means("frequencies", "to either side, whose median a line is held against", "lines")
+] = 20
+SLOW_BINS: Annotated[int, Means("frequencies", "what lies below drifts, it is no line", "lines")] = 2
+LINE: Annotated[float, Means("times its neighbours", "a spectral line stands so far above them", "lines")] = (
+    8.0
+)
+CHANNEL_SHARE: Annotated[
+    float, Means("of the strongest channel's power", "an effect acts in channels above it", "words")
+] = 0.3
+ORDER_SHARE: Annotated[
+    float, Means("of what is left", "an order that explains more is what is left", "words")
+] = 0.4
+DEPENDS: Annotated[
+    float, Means("correlation", "of logarithms: above it what is left depends on torque or speed", "words")
+] = 0.75
+SPEED_SPREAD: Annotated[
+    tuple[float, float], Means("percentiles", "of the speed: its slow and fast ends", "lines")
+] = (20.0, 80.0)
+SPEEDS_DIFFER: Annotated[
+    float, Means("fast over slow end", "above it a line that follows the speed would have moved", "lines")
+] = 1.3
+EVERYWHERE: Annotated[
+    float,
+    Means("times the median condition", "an effect that falls by less acts at all conditions", "words"),
+] = 2.0
+BAND_SHARES: Annotated[
+    tuple[float, float], Means("of the power", "the band that is stated lies between", "words")
+] = (0.1, 0.9)
+LEAST_RECORDINGS: Annotated[
+    int, Means("recordings", "fewer tell no dependence on torque or speed", "words")
+] = 4
