@@ -26,7 +26,7 @@ class RunsWanted:
     """Which runs, in which order; an empty filter lets all pass.
 
     Attributes:
-        since: begun at or after; `until`: before; both with a time zone.
+        since: started at or after; `until`: before; both with a time zone.
         criterion: only runs that have it; `above` and `below` bound its value, in its unit, both included.
         rising: smallest, first or oldest on top.
         most: number of runs given at most.

@@ -58,9 +58,9 @@ class List:
         typer.Option(metavar="VERDICT", help="with runs: pass, fail, done or error"),
     ] = None
     since: Annotated[
-        str, typer.Option(metavar="DATE", help="with runs: begun then or later, such as 2026-11-28T06:00")
+        str, typer.Option(metavar="DATE", help="with runs: started then or later, such as 2026-11-28T06:00")
     ] = ""
-    until: Annotated[str, typer.Option(metavar="DATE", help="with runs: begun before")] = ""
+    until: Annotated[str, typer.Option(metavar="DATE", help="with runs: started before")] = ""
     criterion: Annotated[
         str, typer.Option(metavar="ID", help="with runs: that have this criterion, with its value")
     ] = ""
