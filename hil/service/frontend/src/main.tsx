@@ -1,0 +1,11 @@
+import { render } from "preact";
+import { App } from "./app.tsx";
+import { followLinks } from "./router.ts";
+import { lookWho } from "./session.ts";
+import { beginTheme } from "./theme.ts";
+import "./style/page.css";
+
+beginTheme();
+followLinks();
+void lookWho();
+render(<App />, document.getElementById("page") as HTMLElement);

@@ -1,0 +1,24 @@
+// Which view an address shows.
+
+import type { JSX } from "preact";
+import { to, type Place } from "../addresses.ts";
+import { Heading } from "../ui/parts.tsx";
+import { BenchView } from "./bench.tsx";
+import { Benches } from "./benches.tsx";
+
+export function View({ place }: { place: Place }): JSX.Element {
+  switch (place.view) {
+    case "benches": return <Benches />;
+    case "bench": return <BenchView key={place.bench} bench={place.bench} />;
+    default: return <Missing path={"path" in place ? place.path : place.view} />;
+  }
+}
+
+function Missing({ path }: { path: string }): JSX.Element {
+  return (
+    <>
+      <Heading>No such page</Heading>
+      <p>{`There is nothing at ${path}. `}<a href={to.list("benches")}>All benches</a></p>
+    </>
+  );
+}
