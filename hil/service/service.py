@@ -51,6 +51,7 @@ from hil.service.store import (
     LogStore,
     Presence,
     ResultStore,
+    RunList,
     RunStore,
     TokenStore,
 )
@@ -100,7 +101,7 @@ class Service:
     ) -> None:
         self._own, self._folder = benches, folder
         self.database = Presence(engine)
-        self.runs, self.leases = RunStore(engine), LeaseStore(engine)
+        self.runs, self.run_list, self.leases = RunStore(engine), RunList(engine), LeaseStore(engine)
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
         given = GivenStore(engine)
         models = Uploads(given, "model", folder / "given/models", ".toml")
