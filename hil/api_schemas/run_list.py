@@ -26,7 +26,9 @@ class RunsWanted(_Data):
     state: list[RunState] = Field([], max_length=6)
     verdict: list[RunVerdict] = Field([], max_length=4)
     requested_by: list[_Words] = Field([], max_length=50)
-    since: datetime.datetime | None = Field(None, description="ended, or queued if it has not ended, at or after")
+    since: datetime.datetime | None = Field(
+        None, description="ended, or queued if it has not ended, at or after"
+    )
     until: datetime.datetime | None = Field(None, description="ended, or queued if it has not ended, before")
     text: _Words = Field("", description="part of plan, title, device or person, whatever the case")
     criterion: _Words = Field("", description="only runs that have it; its values are given, too")

@@ -58,6 +58,7 @@ from hil.service.store import (
 from hil.service.worker_pool import WorkerPool
 from test_plans import Plan
 
+_VIEW_S = 600.0
 _ASK_S = 1.0  # a database that is away
 _MOST_SHOWN = 100
 _LAST = 2**31 - 1
@@ -117,11 +118,13 @@ class Service:
         self.studies = Studies(folder / "studies", studies)
         # One worker reads recordings, so that a design in the other does not wait.
         self.worker_pool, self.drawing = WorkerPool(niceness=10), WorkerPool(niceness=0)
+        # And one looks at runs: an hour that no one followed takes it ten seconds, once.
+        self.viewing = WorkerPool(niceness=5, within_s=_VIEW_S)
         self.upload_reader = UploadReader(self.plans)
         self.campaigns = Campaigns(folder / "campaigns", simulating, self.worker_pool, campaigns)
         self.sharing = Rounds(self._share, "files of studies and campaigns")
         self._held = held
-        self.live_hub = LiveHub(lambda: self.benches, self.running)
+        self.live_hub = LiveHub(lambda: self.benches, self.running, folder / "overviews")
         runs_folder = folder / "runs"
         self.keeper: Keeper | None = None
         if archive is not None:

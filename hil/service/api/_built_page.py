@@ -1,7 +1,7 @@
-"""The page that Vite builds (hil/service/frontend): its addresses below /app give one document, whose parts are files.
+"""The page that Vite builds (hil/service/frontend): all addresses below /app give one document.
 
-What an address shows is the page's own matter, so that each can be sent, kept and loaded again. The document is
-never kept by a browser, its parts always: their names change with their content.
+What an address shows is the page's own matter, so that each can be sent, kept and loaded again. The document
+is never kept by a browser, its parts always: their names change with their content.
 """
 
 from __future__ import annotations

@@ -38,6 +38,8 @@ def _names_of(dependant: Dependant) -> set[str]:
     own: set[str] = set()
     for field in dependant.query_params:
         kind = field.field_info.annotation
-        is_model = isinstance(kind, type) and issubclass(kind, BaseModel)
-        own |= set(kind.model_fields) if is_model else {field.alias}
+        if isinstance(kind, type) and issubclass(kind, BaseModel):
+            own |= set(kind.model_fields)
+        else:
+            own.add(field.alias)
     return own.union(*(_names_of(one) for one in dependant.dependencies))

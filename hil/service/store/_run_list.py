@@ -1,4 +1,4 @@
-"""The list of all runs: filtered, sorted and paged by the database, so that ten thousand are as quick as ten."""
+"""The list of all runs: filtered, sorted and paged by the database."""
 
 from __future__ import annotations
 
@@ -55,7 +55,9 @@ class RunList:
             numbers = list(session.scalars(page))
             listed = select(RunRow).where(RunRow.id.in_(numbers)).options(load_only(*_SHOWN))
             runs = {run.id: run for run in session.scalars(listed)}
-            chosen = select(CriterionRow).where(CriterionRow.run.in_(numbers), CriterionRow.id == wanted.criterion)
+            chosen = select(CriterionRow).where(
+                CriterionRow.run.in_(numbers), CriterionRow.id == wanted.criterion
+            )
             criteria = {one.run: one for one in session.scalars(chosen)} if wanted.criterion else {}
             found = [_found(runs[number], criteria.get(number)) for number in numbers]
             return FoundRuns(runs=found, total=session.scalar(count.where(*where)) or 0)
@@ -89,9 +91,9 @@ def _conditions(wanted: RunsWanted) -> list[ColumnElement[bool]]:
     chosen = [(column, getattr(wanted, name)) for name, column in _FILTERS.items()]
     found: list[ColumnElement[bool]] = [column.in_(values) for column, values in chosen if values]
     if wanted.since is not None:
-        found.append(_MOMENT >= wanted.since)
+        found.append(wanted.since <= _MOMENT)
     if wanted.until is not None:
-        found.append(_MOMENT < wanted.until)
+        found.append(wanted.until > _MOMENT)
     if wanted.text:
         found.append(or_(*(column.icontains(wanted.text, autoescape=True) for column in _SEARCHED)))
     if wanted.criterion and wanted.above is not None:

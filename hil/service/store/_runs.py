@@ -318,9 +318,7 @@ def _taken(row: RunRow) -> TakenRun:
 
 def run_data(row: RunRow) -> RunData:
     """A run as the API has it."""
-    moments: dict[str, datetime.datetime | None] = {
-        name: aware(getattr(row, name)) for name in _MOMENTS
-    }
+    moments: dict[str, datetime.datetime | None] = {name: aware(getattr(row, name)) for name in _MOMENTS}
     return RunData.model_validate(
         {
             **{name: getattr(row, name) for name in _SAME},

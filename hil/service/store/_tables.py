@@ -23,7 +23,7 @@ class RunRow(Base):
     __tablename__ = "runs"
     __table_args__ = (
         Index("runs_by_bench_and_state", "bench", "state"),
-        # All that the list of runs is chosen by, so that its rows, each with a plan's text, are not gone through.
+        # All that the list of runs is chosen by, so that rows with their plans' texts are not gone through.
         Index(
             "runs_listed",
             *("plan", "title", "bench", "verdict", "dut", "requested_by", "state", "ended_at", "queued_at"),

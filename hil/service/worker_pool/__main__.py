@@ -13,13 +13,17 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from hil.core.errors import BadInputError, HilError
-from hil.service.worker_pool import _campaigning, _comparing, _designing, _fitting, _reading
+from hil.service.worker_pool import _campaigning, _comparing, _designing, _fitting, _reading, _viewing
 from hil.service.worker_pool._worker_pool import ANSWERED, READING, REFUSED
 
 _IDLE_S = 600.0
 TASKS: dict[str, Callable[..., dict[str, Any]]] = {
     "comparison": _comparing.comparison,
     "traces": _comparing.traces,
+    "run_view": _viewing.view,
+    "run_traces": _viewing.traces,
+    "run_spectrum": _viewing.spectrum,
+    "run_samples": _viewing.samples,
     "draft": _designing.draft,
     "design": _designing.designed,
     "fitted": _fitting.fitted,

@@ -10,7 +10,9 @@ down_revision = "0007"
 branch_labels = None
 depends_on = None
 
-_DUT = "UPDATE runs SET dut = COALESCE((SELECT MAX(criteria.dut) FROM criteria WHERE criteria.run = runs.id), '')"
+_DUT = """
+UPDATE runs SET dut = COALESCE((SELECT MAX(criteria.dut) FROM criteria WHERE criteria.run = runs.id), '')
+"""
 
 _LISTED = ["plan", "title", "bench", "verdict", "dut", "requested_by", "state", "ended_at", "queued_at"]
 
