@@ -40,9 +40,7 @@ async def get_run_traces(
     del me
     close = end_s - start_s < _CLOSE_S * most
     asked = {"channels": channel, "start_s": start_s, "end_s": end_s, "most": most}
-    return RunTraces(
-        run=run, **await RunViews(service).ask("run_traces", there(service, run), close=close, **asked)
-    )
+    return RunTraces(run=run, **await RunViews(service).traces(there(service, run), close=close, **asked))
 
 
 @router.get("/{run}/spectrum", name="get_run_spectrum")
@@ -57,9 +55,7 @@ async def get_run_spectrum(
     """Power spectral density of a channel over a stretch of at most a million samples."""
     del me
     asked = {"channel": channel, "start_s": start_s, "end_s": end_s}
-    return RunSpectrum(
-        run=run, **await RunViews(service).ask("run_spectrum", there(service, run), close=True, **asked)
-    )
+    return RunSpectrum(run=run, **await RunViews(service).ask("run_spectrum", there(service, run), **asked))
 
 
 @router.get("/{run}/samples", name="get_run_samples")
@@ -75,6 +71,4 @@ async def get_run_samples(
     """Samples of channels at the same moments, every n-th of a stretch of at most a million."""
     del me
     asked = {"channels": channel, "start_s": start_s, "end_s": end_s, "most": most}
-    return RunSamples(
-        run=run, **await RunViews(service).ask("run_samples", there(service, run), close=True, **asked)
-    )
+    return RunSamples(run=run, **await RunViews(service).ask("run_samples", there(service, run), **asked))

@@ -120,7 +120,7 @@ class LiveHub:
             self.changed(bench)
 
     async def _keep(self, bench: str) -> None:
-        """Write down what was read of a run that is over; where that fails, it is read again when asked for."""
+        """Write down what was read of a run that is over; where that fails, it is read again when needed."""
         shown = self._runs.get(bench)
         if shown is None or shown.kept or not shown.live.over:
             return

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import functools
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hil.api_schemas.api import OVER, RunData
-from hil.core.errors import BadInputError
-from hil.core.recording import Overview
+from hil.core.errors import BadInputError, BenchError
+from hil.core.recording import Overview, read_overview
 from hil.core.result import CriterionResult, RunResult
 from hil.engine import RECORDING
 from hil.service.live.live_hub import LiveView
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
     from hil.service.service import Service
 
 RESULT = "result.json"
+_KEPT = 16  # overviews that stay open: their buckets stay in their files
 _READ: dict[str, Callable[..., dict[str, Any]]] = {
-    "run_traces": run_view.traces_of,
     "run_spectrum": run_view.spectrum_of,
     "run_samples": run_view.samples_of,
 }
@@ -37,6 +38,7 @@ class RunViews:
 
         Raises:
             BadInputError: nothing was recorded of it.
+            BenchError: the disk does not keep what was read.
         """
         live = self._live(run)
         if live is not None:
@@ -47,14 +49,25 @@ class RunViews:
             return run_view.shown(overview) | {
                 "live": True, "limits": lines, "criteria": criteria, "evidence": None,
             }  # fmt: skip
-        found = await self._service.viewing.ask("run_view", **await self._files(run))
+        overview, _ = await self._kept(run)
+        found = await asyncio.to_thread(run_view.shown, overview)
         return found | {"live": False} | _of_result(await self._result(run), found["marks"])
 
-    async def ask(self, task: str, run: RunData, *, close: bool = False, **asked: Any) -> dict[str, Any]:
-        """An answer of the worker's tasks `run_traces`, `run_spectrum`, `run_samples`.
+    async def traces(self, run: RunData, *, close: bool, **asked: Any) -> dict[str, Any]:
+        """Fields of `RunTraces`, but the run's number.
 
         Args:
             close: whether samples may be needed one by one.
+
+        Raises:
+            BadInputError: as of `traces_of`.
+        """
+        live = self._live(run)
+        found = (_begun(live), live.live.path) if live is not None else await self._kept(run, close=close)
+        return await asyncio.to_thread(run_view.traces_of, *found, **asked)
+
+    async def ask(self, task: str, run: RunData, **asked: Any) -> dict[str, Any]:
+        """An answer of the worker's tasks `run_spectrum` or `run_samples`.
 
         Raises:
             BadInputError: it cannot be answered.
@@ -62,12 +75,25 @@ class RunViews:
         live = self._live(run)
         if live is not None:
             return await asyncio.to_thread(_READ[task], _begun(live), live.live.path, **asked)
-        return await self._service.viewing.ask(task, **await self._files(run, close=close), **asked)
+        return await self._service.viewing.ask(task, **await self._files(run, close=True), **asked)
 
     def _live(self, run: RunData) -> LiveView | None:
         """The run as it is followed; None if it is over, and what it left is looked at."""
         shown = self._service.live_hub.run_of(run.bench)
         return shown if shown is not None and shown.run == run.id and run.state not in OVER else None
+
+    async def _kept(self, run: RunData, *, close: bool = False) -> tuple[Overview, Path]:
+        """The overview of a run that is over, made if it is not there, and the place of its recording."""
+        files = await self._files(run, close=close)
+        folder = Path(files["folder"])
+        overview = await asyncio.to_thread(_opened, folder)
+        if overview is None:
+            _opened.cache_clear()
+            await self._service.viewing.ask("run_overview", **files)
+            overview = await asyncio.to_thread(_opened, folder)
+        if overview is None:
+            raise BenchError("what was read of the recording cannot be kept", where=files["folder"])
+        return overview, Path(files["recording"])
 
     async def _files(self, run: RunData, *, close: bool = False) -> dict[str, str]:
         """Where its overview is kept, and its recording, which is brought back where it is needed."""
@@ -87,6 +113,11 @@ class RunViews:
             return RunResult.model_validate_json(path.read_bytes())
         except (OSError, ValueError):
             return None
+
+
+@functools.lru_cache(_KEPT)
+def _opened(folder: Path) -> Overview | None:
+    return read_overview(folder)
 
 
 def _begun(live: LiveView) -> Overview:

@@ -12,22 +12,14 @@ from hil.service.worker_pool import run_view
 _KEPT = 8  # overviews that stay open
 
 
-def view(folder: str, recording: str) -> dict[str, Any]:
-    """What `RunViewData` has of the recording itself; like the others, of a run's overview and its recording.
+def overview(folder: str, recording: str) -> dict[str, Any]:
+    """Nothing, once the overview of a recording is in its folder.
 
     Raises:
         BadInputError: there is no sample in it.
     """
-    return run_view.shown(_overview(folder, recording))
-
-
-def traces(folder: str, recording: str, **asked: Any) -> dict[str, Any]:
-    """Fields of `RunTraces`.
-
-    Raises:
-        BadInputError: as of `traces_of`.
-    """
-    return run_view.traces_of(_overview(folder, recording), Path(recording), **asked)
+    _overview(folder, recording)
+    return {}
 
 
 def spectrum(folder: str, recording: str, **asked: Any) -> dict[str, Any]:

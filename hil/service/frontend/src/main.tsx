@@ -3,7 +3,9 @@ import { App } from "./app.tsx";
 import { followLinks } from "./router.ts";
 import { lookWho } from "./session.ts";
 import { beginTheme } from "./theme.ts";
+import "uplot/dist/uPlot.min.css";
 import "./style/page.css";
+import "./style/plots.css";
 
 beginTheme();
 followLinks();

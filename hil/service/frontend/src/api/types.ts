@@ -14,3 +14,13 @@ export type Problem = Schemas["Problem"];
 
 export const ROLES = ["viewer", "operator", "engineer", "admin"] as const;
 export type Role = (typeof ROLES)[number];
+export type RunView = Schemas["RunViewData"];
+export type Mark = Schemas["MarkData"];
+export type LimitLine = Schemas["LimitLine"];
+export type Criterion = Schemas["PredictedCriterion"];
+export type RunTraces = Schemas["RunTraces"];
+export type RunSpectrum = Schemas["RunSpectrum"];
+export type RunSamples = Schemas["RunSamples"];
+export type FoundRuns = Schemas["FoundRuns"];
+export type FoundRun = Schemas["FoundRun"];
+export type RunChoices = Schemas["RunChoices"];

@@ -5,11 +5,13 @@ import { to, type Place } from "../addresses.ts";
 import { Heading } from "../ui/parts.tsx";
 import { BenchView } from "./bench.tsx";
 import { Benches } from "./benches.tsx";
+import { RunView } from "./run.tsx";
 
 export function View({ place }: { place: Place }): JSX.Element {
   switch (place.view) {
     case "benches": return <Benches />;
     case "bench": return <BenchView key={place.bench} bench={place.bench} />;
+    case "run": return <RunView key={place.run} run={place.run} />;
     default: return <Missing path={"path" in place ? place.path : place.view} />;
   }
 }
