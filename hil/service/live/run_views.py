@@ -21,6 +21,15 @@ if TYPE_CHECKING:
 
 RESULT = "result.json"
 _KEPT = 16  # overviews that stay open: their buckets stay in their files
+_NOTHING: dict[str, Any] = {
+    "first_s": 0.0,
+    "last_s": 0.0,
+    "sample_time_s": None,
+    "channels": {},
+    "marks": [],
+    "limits": [],
+    "criteria": [],
+}
 _READ: dict[str, Callable[..., dict[str, Any]]] = {
     "run_spectrum": run_view.spectrum_of,
     "run_samples": run_view.samples_of,
@@ -42,13 +51,14 @@ class RunViews:
         """
         live = self._live(run)
         if live is not None:
-            overview = _begun(live)
-            limits = self._service.benches[run.bench].limits
-            lines = [{"channel": name, "above": most, "below": -most} for name, most in limits.items()]
+            bench, overview = self._service.benches[run.bench], live.live.overview()
+            lines = [{"channel": name, "above": most, "below": -most} for name, most in bench.limits.items()]
             criteria = [_criterion(one) for one in live.criteria]
-            return run_view.shown(overview) | {
-                "live": True, "limits": lines, "criteria": criteria, "evidence": None,
-            }  # fmt: skip
+            shown = run_view.shown(overview) if overview else _NOTHING | {"channels": bench.units}
+            return shown | {"live": True, "limits": lines, "criteria": criteria}
+        if run.state not in OVER:
+            units = self._service.benches[run.bench].units if run.bench in self._service.benches else {}
+            return _NOTHING | {"live": True, "channels": units}
         overview, _ = await self._kept(run)
         found = await asyncio.to_thread(run_view.shown, overview)
         return found | {"live": False} | _of_result(await self._result(run), found["marks"])

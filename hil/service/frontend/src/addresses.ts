@@ -56,7 +56,7 @@ export const to = {
   controller: (controller: string): string => `${BASE}/controllers/${name(controller)}`,
   diagnosis: (id: number): string => `${BASE}/diagnoses/${id}`,
   campaign: (id: number): string => `${BASE}/campaigns/${id}`,
-  compare: (first: number, other: number): string => `${BASE}/compare?first=${first}&other=${other}`,
+  compare: (first: number, other: number): string => `${BASE}/compare?runs=${first},${other}`,
 };
 
 const TITLES: Record<(typeof LISTS)[number], string> = {

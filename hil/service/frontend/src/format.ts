@@ -28,7 +28,7 @@ export const percent = (share: number, digits = 0): string =>
 
 export const whole = (value: number): string => formatOf({ maximumFractionDigits: 0 }).format(value);
 
-export const joined = (text: string, unit: string): string => (unit ? `${text}\u00a0${unit}` : text);
+export const joined = (text: string, unit: string): string => (unit && unit !== "1" ? `${text}\u00a0${unit}` : text);
 
 export function duration(seconds: number): string {
   if (seconds < 60) return joined(fixed(seconds, seconds < 10 ? 1 : 0), "s");

@@ -24,3 +24,4 @@ export type RunSamples = Schemas["RunSamples"];
 export type FoundRuns = Schemas["FoundRuns"];
 export type FoundRun = Schemas["FoundRun"];
 export type RunChoices = Schemas["RunChoices"];
+export type Trend = Schemas["TrendData"];

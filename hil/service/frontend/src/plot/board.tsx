@@ -27,15 +27,15 @@ export function Board({ view, plan, bench }: BoardOptions): JSX.Element {
   const live = useLive(bench, channels);
   const marks = useMarks(live, view);
   const source = useSource({ run: view.run, live: bench === null ? null : live, channels, shown: state.shown, first: view.first_s, last: view.last_s });
-  const range = useStore(source.range);
   const [hover, setHover] = useState<number | null>(null);
   const board = useRef<HTMLDivElement>(null);
   const setRange = ({ from, to }: Range) => state.setShown({ from, to });
   const follow = bench !== null && isFollowing(state.shown);
-  const addCursor = () => state.setCursors([...state.cursors, hover ?? 0.5 * (range.from + range.to)].slice(0, 6), state.cursors.length);
+  const addCursor = () => state.setCursors([...state.cursors, hover ?? 0.5 * (source.range.value.from + source.range.value.to)].slice(0, 6), state.cursors.length);
   const moveCursor = (which: number, at: number) => state.setCursors(state.cursors.map((one, number) => (number === which ? at : one)), which);
   const keyed = (event: KeyboardEvent) => {
     if (event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement || event.ctrlKey || event.metaKey || event.altKey) return;
+    const range = source.range.value;
     const step = (event.shiftKey ? 0.1 : 0.01) * (range.to - range.from), sign = event.key === "ArrowLeft" ? -1 : 1, cursor = state.cursors[state.chosen];
     const does: Record<string, () => void> = {
       "+": () => setRange(zoomed(range, 0.5)), "-": () => setRange(zoomed(range, 2)), "0": () => state.setShown("whole"),
@@ -53,12 +53,13 @@ export function Board({ view, plan, bench }: BoardOptions): JSX.Element {
   const limits: LimitLine[] = view.limits;
   return (
     <div class="board" ref={board} onKeyDown={keyed}>
-      <Toolbar state={state} range={range} live={bench !== null} following={follow} onRange={setRange} onCursor={addCursor} channels={names} />
+      <Toolbar state={state} range={source.range} live={bench !== null} following={follow} onRange={setRange} onCursor={addCursor} channels={names} />
+      <CursorTable traces={source.traces} channels={channels} units={view.channels} cursors={state.cursors} chosen={state.chosen} onChoose={(which) => state.setCursors(state.cursors, which)} onRemove={(which) => state.setCursors(state.cursors.filter((_, at) => at !== which), 0)} />
       <div class="board-columns">
         <div class="plots">
           {state.plots.map((plot, at) => (
             <PlotCard
-              key={`${at} ${plot.kind}`} plot={plot} number={at + 1} view={view} marks={marks} limits={limits} source={source} range={range} following={follow} hover={hover}
+              key={`${at} ${plot.kind}`} plot={plot} number={at + 1} view={view} marks={marks} limits={limits} source={source} following={follow} hover={hover}
               cursors={state.cursors} chosen={state.chosen} onRange={setRange} onCursor={moveCursor} onHover={setHover}
               onDrop={(channel) => change(at, withChannel(plot, channel))} onTake={(channel) => change(at, withoutChannel(plot, channel))} onRemove={() => change(at, null)}
             />
@@ -66,7 +67,6 @@ export function Board({ view, plan, bench }: BoardOptions): JSX.Element {
           {state.plots.length ? null : <p class="quiet">No plot. Add one above.</p>}
         </div>
         <div class="board-side">
-          <CursorTable traces={source.traces} channels={channels} units={view.channels} cursors={state.cursors} chosen={state.chosen} onChoose={(which) => state.setCursors(state.cursors, which)} onRemove={(which) => state.setCursors(state.cursors.filter((_, at) => at !== which), 0)} />
           <ChannelList channels={view.channels} plots={state.plots} newest={bench === null ? null : source.newest} onPut={(channel, at) => change(at, withChannel(state.plots[at] ?? { kind: "time", channels: [] }, channel))} />
         </div>
       </div>

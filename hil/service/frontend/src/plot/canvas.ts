@@ -47,6 +47,7 @@ export function drawMarks(plot: uPlot, marks: readonly Mark[], last: number): vo
   const one = devicePixelRatio, bar = 14 * one;
   inside(plot, (pen, box) => {
     pen.font = `${11 * one}px sans-serif`;
+    pen.textAlign = "left";
     pen.textBaseline = "middle";
     for (const mark of marks) {
       const from = plot.valToPos(mark.start_s, "x", true), to = plot.valToPos(mark.end_s ?? (mark.kind === "event" ? mark.start_s : last), "x", true);

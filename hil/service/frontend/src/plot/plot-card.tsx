@@ -24,7 +24,6 @@ interface Options {
   marks: Mark[];
   limits: LimitLine[];
   source: Source;
-  range: Range;
   following: boolean;
   hover: number | null;
   cursors: number[];
@@ -42,7 +41,7 @@ const KINDS = { time: "", spectrum: "Spectrum: ", xy: "XY: " };
 export function PlotCard(options: Options): JSX.Element {
   const { plot, number, view, source, hover } = options;
   const [over, setOver] = useState(false);
-  const settled = useSettled(options.range, options.following);
+  const settled = useSettled(source.range, options.following, source.last);
   const others = Object.keys(view.channels).filter((channel) => !plot.channels.includes(channel));
   const label = `Plot ${number}: ${KINDS[plot.kind]}${plot.channels.map(wordsOf).join(", ") || "no channel"}`;
   const drop = (event: DragEvent) => {
@@ -63,13 +62,14 @@ export function PlotCard(options: Options): JSX.Element {
             <option value="" disabled>Channel …</option>
             {others.map((channel) => <option key={channel} value={channel}>{channel}</option>)}
           </select>
-          <button type="button" class="plain" aria-label={`Remove plot ${number}`} onClick={options.onRemove}>Remove</button>
+          <button type="button" class="plain" aria-label={`Remove plot ${number}`} title="Remove this plot" onClick={options.onRemove}>✕</button>
         </span>
       </figcaption>
       <div class="plot-place" tabIndex={0} role="img" aria-label={label}>
         {plot.kind === "time" ? <TimePlot channels={plot.channels} units={view.channels} traces={source.traces} range={source.range} marks={options.marks} limits={options.limits} cursors={options.cursors} chosen={options.chosen} onRange={options.onRange} onCursor={options.onCursor} onHover={options.onHover} /> : null}
-        {plot.kind === "spectrum" && plot.channels[0] ? <SpectrumPlot run={view.run} channel={plot.channels[0]} unit={view.channels[plot.channels[0]] ?? ""} range={settled} /> : null}
-        {plot.kind === "xy" ? <XyPlot run={view.run} channels={plot.channels} units={view.channels} range={settled} /> : null}
+        {plot.kind === "spectrum" && plot.channels[0] && settled ? <SpectrumPlot run={view.run} channel={plot.channels[0]} unit={view.channels[plot.channels[0]] ?? ""} range={settled} /> : null}
+        {plot.kind === "xy" && settled ? <XyPlot run={view.run} channels={plot.channels} units={view.channels} range={settled} /> : null}
+        {plot.kind !== "time" && !settled ? <p class="quiet canvas">Too little has been measured yet.</p> : null}
       </div>
     </figure>
   );

@@ -1,21 +1,22 @@
 // A range that does not move with every sample: while plots follow, what takes longer looks once a second at the last 8 s.
 
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
+import type { Store } from "../store.ts";
 import type { Range } from "./range.ts";
 
-const EVERY_MS = 1000;
 const LAST_S = 8;
+const LEAST_S = 0.2; // of which a spectrum says anything
 
-export function useSettled(range: Range, following: boolean): Range {
-  const now = useRef(range);
-  now.current = range;
-  const [settled, setSettled] = useState(range);
+// Null where too little was measured in it.
+export function useSettled(range: Store<Range>, following: boolean, last: number): Range | null {
+  const [settled, setSettled] = useState(range.value);
   useEffect(() => {
-    if (!following) return undefined;
-    const look = () => setSettled({ from: Math.max(now.current.from, now.current.to - LAST_S), to: now.current.to });
+    const look = () => {
+      const { from, to } = range.value;
+      setSettled(following ? { from: Math.max(from, Math.min(to, last) - LAST_S), to: Math.min(to, last) } : range.value);
+    };
     look();
-    const timer = setInterval(look, EVERY_MS);
-    return () => clearInterval(timer);
-  }, [following]);
-  return following ? settled : range;
+    return following ? undefined : range.subscribe(look);
+  }, [range, following, following ? Math.floor(last) : 0]);
+  return Math.min(settled.to, last) - settled.from < LEAST_S ? null : settled;
 }

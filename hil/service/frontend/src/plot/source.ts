@@ -17,6 +17,7 @@ export interface Source {
 
 const SOON_MS = 60;
 const AGAIN_MS = 1000;
+const NUMBERS_MS = 200; // no one reads faster
 const MOST = 1200;
 
 export interface Wanted {
@@ -37,10 +38,13 @@ export function useSource({ run, live, channels, shown, first, last }: Wanted): 
   const end = live ? Math.max(last, measured) : last;
   useEffect(() => {
     if (!live) return undefined;
-    let due = false;
+    let due = false, numbersMs = 0;
     const show = () => {
       due = false;
-      stores.newest.value = recent.traces;
+      if (performance.now() - numbersMs > NUMBERS_MS) {
+        numbersMs = performance.now();
+        stores.newest.value = recent.traces;
+      }
       if (!follows) return;
       stores.range.value = rangeOf(shown, first, Math.max(last, recent.last));
       stores.traces.value = recent.traces;

@@ -67,7 +67,7 @@ function make(element: HTMLElement, unit: string): uPlot {
     height: HEIGHT,
     legend: { show: false },
     scales: { x: { time: false, range: () => [0, HIGHEST_HZ] }, y: { range: highest } },
-    axes: [axis({ space: 60, values: (_, values) => values.map((one) => (one === HIGHEST_HZ ? `${one} Hz` : String(one))) }), axis({ size: 64, unit: unit ? `(${unit})²/Hz` : "" })],
+    axes: [axis({ space: 60, size: 28, values: (_, values) => values.map((one) => (one === HIGHEST_HZ ? `${one} Hz` : String(one))) }), axis({ size: 64, unit: unit ? `(${unit})²/Hz` : "" })],
     series: [{}, { stroke: () => colour(`series-${roleOf(0)}`), width: 1.4, points: { show: false } }],
     cursor: { drag: { x: false, y: false }, points: { show: false } },
     hooks: { drawAxes: [(plot) => drawBand(plot, ...BAND_HZ)] },

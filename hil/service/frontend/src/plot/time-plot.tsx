@@ -67,7 +67,7 @@ function make(element: HTMLElement, now: Now): uPlot {
       x: { time: false, range: () => [now.current.range.value.from, now.current.range.value.to] },
       ...Object.fromEntries(scales.map((unit) => [unit || "none", { range: (_: uPlot, low: number | null, high: number | null) => roomy(low, high) }])),
     },
-    axes: [axis({ space: 70 }), ...scales.slice(0, 2).map((unit, at) => axis({ scale: unit || "none", unit, size: 56, side: at ? 1 : 3, grid: { show: at === 0, stroke: () => colour("grid"), width: 1 } }))],
+    axes: [axis({ space: 70, size: 28 }), ...scales.slice(0, 2).map((unit, at) => axis({ scale: unit || "none", unit, size: 56, side: at ? 1 : 3, grid: { show: at === 0, stroke: () => colour("grid"), width: 1 } }))],
     series: [{}, ...channels.flatMap((channel, at) => [seriesOf(units[channel] ?? "", at), seriesOf(units[channel] ?? "", at)])],
     bands: channels.map((_, at) => ({ series: [2 * at + 1, 2 * at + 2], fill: () => colour(`series-${roleOf(at)}`) })),
     cursor: { sync: { key: "time" }, drag: { x: true, y: false, setScale: false }, points: { show: false }, bind: { mousedown: grabbed(now) } },

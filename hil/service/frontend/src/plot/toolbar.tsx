@@ -2,6 +2,7 @@
 
 import type { JSX } from "preact";
 import { useState } from "preact/hooks";
+import type { Store } from "../store.ts";
 import type { BoardState } from "./board-state.ts";
 import { MOST_PLOTS, type PlotKind } from "./layout.ts";
 import { panned, zoomed, type Range } from "./range.ts";
@@ -11,7 +12,7 @@ const KINDS: [PlotKind, string][] = [["time", "over time"], ["spectrum", "spectr
 
 interface Options {
   state: BoardState;
-  range: Range;
+  range: Store<Range>;
   live: boolean;
   following: boolean;
   channels: string[];
@@ -32,14 +33,14 @@ export function Toolbar({ state, range, live, following, channels, onRange, onCu
     <div class="toolbar small" role="toolbar" aria-label="Plots">
       {live ? (
         <>
-          <button type="button" aria-pressed={following} onClick={() => state.setShown(following ? { ...range } : { follow: window })}>{following ? "Hold" : "Follow"}</button>
+          <button type="button" aria-pressed={following} onClick={() => state.setShown(following ? { ...range.value } : { follow: window })}>{following ? "Hold" : "Follow"}</button>
           <label>Last <select value={window} onChange={(event) => state.setShown({ follow: Number(event.currentTarget.value) })}>{WINDOWS_S.map((one) => <option key={one} value={one}>{`${one} s`}</option>)}</select></label>
         </>
       ) : null}
-      <button type="button" onClick={() => onRange(zoomed(range, 0.5))} aria-label="Zoom in">+</button>
-      <button type="button" onClick={() => onRange(zoomed(range, 2))} aria-label="Zoom out">−</button>
-      <button type="button" onClick={() => onRange(panned(range, -0.5))} aria-label="Earlier">◀</button>
-      <button type="button" onClick={() => onRange(panned(range, 0.5))} aria-label="Later">▶</button>
+      <button type="button" onClick={() => onRange(zoomed(range.value, 0.5))} aria-label="Zoom in">+</button>
+      <button type="button" onClick={() => onRange(zoomed(range.value, 2))} aria-label="Zoom out">−</button>
+      <button type="button" onClick={() => onRange(panned(range.value, -0.5))} aria-label="Earlier">◀</button>
+      <button type="button" onClick={() => onRange(panned(range.value, 0.5))} aria-label="Later">▶</button>
       <button type="button" onClick={() => state.setShown("whole")}>Whole run</button>
       <button type="button" onClick={onCursor} disabled={state.cursors.length >= 6}>Add a cursor</button>
       <label><span class="hidden">Add a plot</span>

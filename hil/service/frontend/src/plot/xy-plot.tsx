@@ -65,7 +65,7 @@ function make(element: HTMLElement, points: { current: Found }, below: string, u
     height: HEIGHT,
     legend: { show: false },
     scales: { x: { time: false, range: () => around(points.current.x) }, y: { range: () => around(points.current.y) } },
-    axes: [axis({ space: 60, unit: below }), axis({ size: 56, unit })],
+    axes: [axis({ space: 60, size: 28, unit: below }), axis({ size: 56, unit })],
     series: [{}, { show: false }],
     cursor: { drag: { x: false, y: false }, points: { show: false } },
     hooks: { draw: [(plot) => draw(plot, points.current)] },

@@ -31,7 +31,7 @@ export function Criteria({ of, onSegment }: { of: Shown[]; onSegment?: (segment:
               <th scope="row">
                 {onSegment && one.id.includes(".") ? <button type="button" class="plain" onClick={() => onSegment(one.id.slice(0, one.id.lastIndexOf(".")))}>{one.title || one.id}</button> : one.title || one.id}
                 {one.reason ? <span class="reason">{one.reason}</span> : null}
-                {one.source === "device" ? <span class="reason">of any device</span> : null}
+                {one.title ? <span class="reason">{one.source === "device" ? `${one.id}, of any device` : one.id}</span> : null}
               </th>
               <td class="number">{figure(one.value, one.unit)}</td>
               <td class="number">{one.below ? `below ${one.below}` : limitText(one.upper, one.lower, one.unit)}</td>

@@ -87,7 +87,7 @@ function RunActions({ run }: { run: Run }): JSX.Element | null {
       {may("operator") && OVER.includes(run.state) ? <button type="button" onClick={() => void again()}>Again</button> : null}
       {may("operator") && waits ? <button type="button" onClick={() => void attempt(() => post(`/runs/${run.id}/abort`))}>Cancel</button> : null}
       {run.state === "waiting_approval" && may("engineer") ? <button type="button" class="main" onClick={() => void attempt(() => post(`/runs/${run.id}/approve`))}>Approve</button> : null}
-      {run.state === "ended" ? <a href={`${to.list("compare")}?first=${run.id}`}>Compare with another run</a> : null}
+      {run.state === "ended" ? <a href={`${to.list("compare")}?runs=${run.id}`}>Compare with another run</a> : null}
       <a href={`${to.list("runs")}?plan=${encodeURIComponent(run.plan)}`}>All runs of this plan</a>
     </div>
   );
