@@ -31,7 +31,7 @@ export function Board({ view, plan, bench }: BoardOptions): JSX.Element {
   const board = useRef<HTMLDivElement>(null);
   const setRange = ({ from, to }: Range) => state.setShown({ from, to });
   const follow = bench !== null && isFollowing(state.shown);
-  const addCursor = () => state.setCursors([...state.cursors, hover ?? 0.5 * (source.range.value.from + source.range.value.to)].slice(0, 6), state.cursors.length);
+  const addCursor = () => state.setCursors([...state.cursors, hover ?? placeOf(source.range.value, state.cursors.length)].slice(0, 6), state.cursors.length);
   const moveCursor = (which: number, at: number) => state.setCursors(state.cursors.map((one, number) => (number === which ? at : one)), which);
   const keyed = (event: KeyboardEvent) => {
     if (event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement || event.ctrlKey || event.metaKey || event.altKey) return;
@@ -73,6 +73,9 @@ export function Board({ view, plan, bench }: BoardOptions): JSX.Element {
     </div>
   );
 }
+
+// Where a cursor comes that no pointer places: each beside the last.
+const placeOf = ({ from, to }: Range, number: number): number => from + (0.4 + 0.1 * (number % 6)) * (to - from);
 
 function useMarks(live: Live, view: RunView): Mark[] {
   const found = useStore(live.marks);

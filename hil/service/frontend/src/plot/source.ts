@@ -38,9 +38,9 @@ export function useSource({ run, live, channels, shown, first, last }: Wanted): 
   const end = live ? Math.max(last, measured) : last;
   useEffect(() => {
     if (!live) return undefined;
-    let due = false, numbersMs = 0;
+    let frame = 0, numbersMs = 0;
     const show = () => {
-      due = false;
+      frame = 0;
       if (performance.now() - numbersMs > NUMBERS_MS) {
         numbersMs = performance.now();
         stores.newest.value = recent.traces;
@@ -52,15 +52,14 @@ export function useSource({ run, live, channels, shown, first, last }: Wanted): 
     const stop = live.onSamples((samples) => {
       if (samples.run !== run) return;
       recent.add(samples);
-      if (due) return;
-      due = true; // as often as the screen is drawn, and no more
-      requestAnimationFrame(show);
+      frame ||= requestAnimationFrame(show); // as often as the screen is drawn, and no more
     });
     const timer = setInterval(() => setMeasured(recent.last), AGAIN_MS);
     show();
-    return () => { stop(); clearInterval(timer); };
+    return () => { stop(); clearInterval(timer); cancelAnimationFrame(frame); };
   }, [live, run, follows, follows ? (shown as { follow: number }).follow : 0, first]);
   const range = rangeOf(shown, first, end);
+  const grows = live !== null && !follows && range.to >= end - 2 ? end : 0; // what is held may still be filling
   useEffect(() => {
     if (follows) return undefined;
     stores.range.value = range;
@@ -72,6 +71,6 @@ export function useSource({ run, live, channels, shown, first, last }: Wanted): 
       get<RunTraces>(`/runs/${run}/traces?${query}`, control.signal).then((found) => { stores.traces.value = tracesOf(found); }).catch(() => {});
     }, SOON_MS);
     return () => { control.abort(); clearTimeout(timer); };
-  }, [run, key, follows, range.from, range.to]);
+  }, [run, key, follows, range.from, range.to, grows]);
   return { ...stores, last: end };
 }
