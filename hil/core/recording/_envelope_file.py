@@ -108,7 +108,7 @@ def read_overview(folder: Path) -> Overview | None:
         )
         events = tuple(Event(*event) for event in facts["events"])
         return Overview(envelope, facts["tables"], events, frozenset(facts["row_ids"]))
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, EOFError, ValueError, KeyError, TypeError, IndexError):
         return None
 
 

@@ -43,12 +43,6 @@ export const moment = (iso: string): string => moments.format(new Date(iso));
 
 const UNITS: Record<string, string> = { nm: "N m", rad_s: "rad/s", m_s: "m/s", s: "s", rad: "rad", degc: "°C", v: "V", a: "A", w: "W", hz: "Hz" };
 
-// The unit that a channel's name ends in, for one that the bench does not give a unit of.
-export function unitOf(channel: string): string {
-  const ending = Object.keys(UNITS).filter((one) => channel.endsWith(`_${one}`)).sort((one, other) => other.length - one.length)[0];
-  return ending ? (UNITS[ending] ?? "") : "";
-}
-
 // A channel's name without its unit, in words.
 export function wordsOf(channel: string): string {
   const ending = Object.keys(UNITS).filter((one) => channel.endsWith(`_${one}`)).sort((one, other) => other.length - one.length)[0];
