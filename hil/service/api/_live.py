@@ -14,6 +14,7 @@ from fastapi.responses import StreamingResponse
 
 from hil.api_schemas.api import BenchName
 from hil.api_schemas.comparison import ChannelName
+from hil.core.result import CriterionResult
 from hil.service.api._access import TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError
@@ -119,7 +120,7 @@ class _Watching:
             news.append(self._samples(run, first, buckets))
         if shown.criteria is not self._criteria:
             self._criteria = shown.criteria
-            decided = [one.model_dump(mode="json", exclude={"definition"}) for one in shown.criteria]
+            decided = [_criterion(one) for one in shown.criteria]
             news.append(_event("criteria", {"run": run, "criteria": decided}))
         if (marks := (run, *shown.live.marks)) != self._marks:
             self._marks = marks
@@ -180,6 +181,10 @@ def _spectrum(run: int, found: Spectrum | None) -> str:
         return ""
     values = {"step_hz": found.step_hz, "density": numbers(found.density)}
     return _event("spectrum", {"run": run, "band_energy": found.band_energy, **values})
+
+
+def _criterion(one: CriterionResult) -> dict[str, Any]:
+    return one.model_dump(mode="json", exclude={"definition"}) | {"margin": one.margin}
 
 
 def _event(name: str, data: dict[str, Any]) -> str:

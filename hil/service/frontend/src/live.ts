@@ -28,6 +28,7 @@ export interface Criterion {
   upper: number | null;
   lower: number | null;
   verdict: string;
+  margin: number | null;
   reason: string;
   below: string;
   source: string;

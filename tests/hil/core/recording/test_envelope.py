@@ -1,4 +1,4 @@
-"""Envelopes: no peak is lost however samples come and however wide one looks; samples are found where they lie."""
+"""Envelopes: no peak is lost however samples come; samples are found where they lie."""
 
 from __future__ import annotations
 

@@ -18,8 +18,8 @@ export function StopButton(): JSX.Element {
     setTimeout(() => setSent(false), 1500);
   };
   return (
-    <button type="button" class="stop" onClick={() => void stop()} aria-label={`Emergency stop, ${bench ? `bench ${bench}` : "all benches"}`}>
-      Emergency stop<small>{sent ? "sent" : bench || "all benches"}</small>
+    <button type="button" class="stop" onClick={() => void stop()}>
+      {"Emergency stop "}<small>{sent ? "sent" : bench || "all benches"}</small>
     </button>
   );
 }

@@ -40,7 +40,7 @@ export function Section({ title, aside, children, label }: { title: ComponentChi
 
 // A table that scrolls by itself where it is wider than the page.
 export function Scroll({ label, children }: { label: string; children: ComponentChildren }): JSX.Element {
-  return <div class="scroll" tabIndex={0} role="region" aria-label={label}>{children}</div>;
+  return <div class="scroll" tabIndex={0} role="region" aria-label={`${label}, table`}>{children}</div>;
 }
 
 // What was asked for, or why it is not there.
