@@ -74,7 +74,7 @@ def _fill(file: Path, runs: int) -> None:
     with engine.begin() as connection:
         for first in range(1, runs + 1, 1000):
             numbers = range(first, min(first + 1000, runs + 1))
-            connection.execute(insert(tables["runs"]), [_run(number) for number in numbers])
+            connection.execute(insert(tables["runs"]), [a_run(number) for number in numbers])
             connection.execute(
                 insert(tables["criteria"]),
                 [
@@ -86,7 +86,8 @@ def _fill(file: Path, runs: int) -> None:
     engine.dispose()
 
 
-def _run(number: int) -> dict[str, object]:
+def a_run(number: int) -> dict[str, object]:
+    """Columns of a run that has ended."""
     ended = _BEGAN + datetime.timedelta(hours=number)
     return {
         "id": number,

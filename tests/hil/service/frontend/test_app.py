@@ -143,7 +143,9 @@ def test_the_palette_finds_by_keyboard_alone(page: playwright.Page, there: Serve
     ):
         page.keyboard.press("Control+k")
         page.keyboard.type(words)
-        expect(page.get_by_role("option").first).to_contain_text(words, ignore_case=True)
+        expect(page.get_by_role("dialog").get_by_role("option").first).to_contain_text(
+            words, ignore_case=True
+        )
         page.keyboard.press("Enter")
         expect(page).to_have_url(there.url + url)
     page.keyboard.press("Control+k")
@@ -166,7 +168,9 @@ def test_runs_are_filtered_sorted_and_compared(page: playwright.Page, there: Ser
     for run in (1, 2):
         page.get_by_label(f"Compare run {run}", exact=True).check()
     page.get_by_role("button", name="Compare", exact=True).click()
-    expect(page.get_by_role("region", name="Different inputs", exact=True).locator("table")).to_contain_text("150")
+    expect(page.get_by_role("region", name="Different inputs", exact=True).locator("table")).to_contain_text(
+        "150"
+    )
     expect(page.get_by_role("img", name=re.compile("shaft torque of runs 1, 2"))).to_be_visible()
 
 
