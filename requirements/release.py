@@ -19,6 +19,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 DIST = ROOT / "dist"
 UV = Path(sys.executable).parent / "uv"
+_PAGE = "hil/service/frontend/built/index.html"
 
 
 def main() -> int:
@@ -31,6 +32,8 @@ def main() -> int:
         old.unlink()
     _run(UV, "build", "--quiet", "--out-dir", DIST, ROOT)
     (wheel,), (sdist,) = DIST.glob("*.whl"), DIST.glob("*.tar.gz")
+    if _PAGE not in _contents(wheel):
+        raise SystemExit(f"{wheel.name} has no page: make page")
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
         _same_from_sdist(wheel, sdist, place / "from-sdist")

@@ -121,6 +121,7 @@ class RunData(_Data):
     verdict: RunVerdict | None = None
     safe_state: Literal["confirmed", "not_confirmed", "not_needed"] | None = None
     reason: str = Field("", description="reason of its end, or of waiting")
+    dut: str = Field("", description="serial number or name of the tested device, when it is finished")
     files: list[str] = Field([], description="names of its files, when it is finished")
 
 

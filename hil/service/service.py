@@ -50,12 +50,14 @@ from hil.service.store import (
     LogStore,
     Presence,
     ResultStore,
+    RunList,
     RunStore,
     TokenStore,
 )
 from hil.service.worker_pool import WorkerPool
 from test_plans import Plan
 
+_VIEW_S = 600.0
 _ASK_S = 1.0  # a database that is away
 _MOST_SHOWN = 100
 _LAST = 2**31 - 1
@@ -99,7 +101,7 @@ class Service:
     ) -> None:
         self._own, self._folder = benches, folder
         self.database = Presence(engine)
-        self.runs, self.leases = RunStore(engine), LeaseStore(engine)
+        self.runs, self.run_list, self.leases = RunStore(engine), RunList(engine), LeaseStore(engine)
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
         given = GivenStore(engine)
         models = Uploads(given, "model", folder / "given/models", ".toml")
@@ -115,11 +117,13 @@ class Service:
         self.studies = Studies(folder / "studies", studies)
         # One worker reads recordings, so that a design in the other does not wait.
         self.worker_pool, self.drawing = WorkerPool(niceness=10), WorkerPool(niceness=0)
+        # And one looks at runs: an hour that no one followed takes it ten seconds, once.
+        self.viewing = WorkerPool(niceness=5, within_s=_VIEW_S)
         self.upload_reader = UploadReader(self.plans)
         self.campaigns = Campaigns(folder / "campaigns", simulating, self.worker_pool, campaigns)
         self.sharing = Rounds(self._share, "files of studies and campaigns")
         self._held = held
-        self.live_hub = LiveHub(lambda: self.benches, self.running)
+        self.live_hub = LiveHub(lambda: self.benches, self.running, folder / "overviews")
         runs_folder = folder / "runs"
         self.keeper: Keeper | None = None
         if archive is not None:

@@ -187,6 +187,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         await service.campaigns.close()
         service.worker_pool.close()
         service.drawing.close()
+        service.viewing.close()
         service.upload_reader.close()
         for bench in list(service.benches):
             service.changed(bench)

@@ -9,6 +9,8 @@ from hil.core.errors import BadInputError
 from hil.core.files import refuse_unless_regular
 from hil.core.recording._checked import checked
 from hil.core.recording._column_map import AS_NAMED, ColumnMap, column_map
+from hil.core.recording._envelope import Envelope, EnvelopeBuilder, Stretch
+from hil.core.recording._envelope_file import Overview, overview_of, read_overview, write_overview
 from hil.core.recording._evidence import (
     ACCEPTED_EXPIRY,
     DEVICE,
@@ -130,24 +132,31 @@ __all__ = [
     "VEHICLE",
     "WRITTEN",
     "ColumnMap",
+    "Envelope",
+    "EnvelopeBuilder",
     "Event",
     "FollowedRecording",
     "Missing",
+    "Overview",
     "Recording",
     "RecordingWriter",
+    "Stretch",
     "assigned_signals",
     "checked",
     "column_map",
     "columns_of",
     "driven_by_torque",
     "missing_of",
+    "overview_of",
     "read_as_written",
     "read_frames",
+    "read_overview",
     "read_recording",
     "recover_recording",
     "refuse_unless_regular",
     "run_of",
     "write_frames",
+    "write_overview",
     "write_recording",
     "written_with",
 ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import os
 from pathlib import Path
 from types import TracebackType
@@ -59,28 +60,47 @@ class FollowedRecording:
         """Let go of the file."""
         self._file.close()
 
+    @property
+    def row_ids(self) -> frozenset[int]:
+        """The file's own numbers of the channels whose messages are rows of samples."""
+        return frozenset(one for one, topic in self._topics.items() if topic == CHANNELS_TOPIC)
+
     def fetch(self) -> npt.NDArray[np.float64]:
         """Rows of samples since the last call, shape (samples, channels).
 
         Raises:
             BadInputError: the file is no recording of the project, or broken.
         """
-        rows: list[npt.NDArray[np.float64]] = []
+        rows = [part for _, part in self.fetch_parts()]
+        return np.concatenate(rows) if rows else np.zeros((0, len(self.names)))
+
+    def fetch_parts(self, most_bytes: float = math.inf) -> list[tuple[int, npt.NDArray[np.float64]]]:
+        """The same by records, each with where it stands in the file; stops after so many bytes of rows.
+
+        Raises:
+            BadInputError: like `fetch`.
+        """
+        parts: list[tuple[int, npt.NDArray[np.float64]]] = []
+        taken = 0
         size = os.fstat(self._file.fileno()).st_size
-        while not self.over and (found := raw_record(self._file, self._position, size)) is not None:
+        while (
+            not self.over
+            and taken < most_bytes
+            and (found := raw_record(self._file, self._position, size)) is not None
+        ):
             opcode, body = found
             record = mcap.parsed(opcode, body)
             if record is None:
                 raise BadInputError(
                     "the recording is broken", where=str(self._path), fix="hil evidence recover"
                 )
-            self._position += RECORD_HEAD + len(body)
-            if isinstance(record, mcap.Chunk):
-                for inside in records_inside(record.content):
-                    rows += self._take(inside)
-            else:
-                rows += self._take(record)
-        return np.concatenate(rows) if rows else np.zeros((0, len(self.names)))
+            position, self._position = self._position, self._position + RECORD_HEAD + len(body)
+            records = records_inside(record.content) if isinstance(record, mcap.Chunk) else [record]
+            rows = [part for inside in records for part in self._take(inside)]
+            if rows:
+                parts.append((position, np.concatenate(rows)))
+                taken += parts[-1][1].nbytes
+        return parts
 
     def _take(self, record: mcap.Record) -> list[npt.NDArray[np.float64]]:
         match record:

@@ -11,6 +11,7 @@ from starlette.types import ASGIApp
 from hil.service.api import (
     _agents,
     _benches,
+    _built_page,
     _campaigns,
     _comparisons,
     _design,
@@ -19,6 +20,8 @@ from hil.service.api import (
     _page,
     _people,
     _plans,
+    _run_list,
+    _run_views,
     _runs,
     _studies,
     _trends,
@@ -36,6 +39,8 @@ _PARTS = (
     _live,
     _plans,
     _runs,
+    _run_views,
+    _run_list,
     _comparisons,
     _trends,
     _design,
@@ -72,5 +77,6 @@ def _bare(service: Service | None) -> FastAPI:
     for part in _PARTS:
         app.include_router(part.router, prefix=PREFIX, dependencies=[Depends(refuse_unknown_query)])
     _page.add_to(app)
+    _built_page.add_to(app)
     answer_problems(app)
     return app

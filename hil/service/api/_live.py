@@ -5,24 +5,28 @@ from __future__ import annotations
 import asyncio
 import json
 import time
-from collections.abc import AsyncIterator
-from typing import Any
+from collections.abc import AsyncIterator, Sequence
+from functools import partial
+from typing import Annotated, Any
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Query
 from fastapi.responses import StreamingResponse
 
 from hil.api_schemas.api import BenchName
+from hil.api_schemas.comparison import ChannelName
+from hil.core.result import CriterionResult
 from hil.service.api._access import TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError
-from hil.service.live.live import BUCKET_S, Spectrum, Stretch
+from hil.service.live.live import BUCKET_S, Buckets, Spectrum, Stretch
 from hil.service.live.live_hub import LiveView
 from hil.service.service import Service
 from hil.service.store import in_turns
 from hil.service.worker_pool.drawn_numbers import numbers
+from hil.service.worker_pool.run_view import marks_of
 
 router = APIRouter(tags=["live"])
-#: What the page draws.
+#: What a viewer is sent who does not say which.
 CHANNELS = (
     "motor_speed_rad_s",
     "wheel_speed_rad_s",
@@ -44,20 +48,29 @@ _SHOWN_S = 30.0  # of a run that was under way before the viewer came
     response_class=StreamingResponse,
     responses={200: {"content": {"text/event-stream": {"schema": {"type": "string"}}}}},
 )
-async def live(bench: BenchName, service: TheService, me: Viewer) -> StreamingResponse:
-    """A bench as it changes: events `state`, `samples`, `spectrum`, `criteria` (docs/reference/api.md)."""
+async def live(
+    bench: BenchName,
+    service: TheService,
+    me: Viewer,
+    channel: Annotated[list[ChannelName] | None, Query(max_length=24)] = None,
+) -> StreamingResponse:
+    """A bench as it changes: `state`, `samples`, `spectrum`, `criteria`, `marks` (docs/reference/api.md)."""
     del me
     known(service, bench)
     if len(service.live_hub.viewers[bench]) >= _MOST_VIEWERS:
         raise RefusedError(429, f"the limit of {_MOST_VIEWERS} viewers is reached")
-    return StreamingResponse(_Watching(service, bench).events(), media_type="text/event-stream")
+    return StreamingResponse(
+        _Watching(service, bench, channel or CHANNELS).events(), media_type="text/event-stream"
+    )
 
 
 class _Watching:
     """One viewer of one bench."""
 
-    def __init__(self, service: Service, bench: str) -> None:
+    def __init__(self, service: Service, bench: str, channels: Sequence[str]) -> None:
         self._service, self._bench, self._cache = service, bench, service.live_hub.caches[bench]
+        self._channels = tuple(dict.fromkeys(channels))
+        self._marks: object = None
         self._run = -1
         self._next_bucket = 0
         self._version = -1
@@ -100,17 +113,33 @@ class _Watching:
     def _of_run(self, shown: LiveView) -> list[str]:
         news, buckets, run = [], shown.live.buckets, shown.run
         if run != self._run:
-            self._run, self._criteria = run, None
+            self._run, self._criteria, self._marks = run, None, None
             self._next_bucket = max(0, buckets.shown - round(_SHOWN_S / BUCKET_S))
         first, self._next_bucket = self._next_bucket, max(self._next_bucket, buckets.shown)
         if self._next_bucket > first:
-            span = (run, first, self._next_bucket)
-            news.append(self._cache.text("samples", span, lambda: _samples(run, buckets.since(first))))
+            news.append(self._samples(run, first, buckets))
         if shown.criteria is not self._criteria:
             self._criteria = shown.criteria
-            decided = [one.model_dump(mode="json", exclude={"definition"}) for one in shown.criteria]
+            decided = [_criterion(one) for one in shown.criteria]
             news.append(_event("criteria", {"run": run, "criteria": decided}))
+        if (marks := (run, *shown.live.marks)) != self._marks:
+            self._marks = marks
+            news.append(self._cache.text("marks", marks, lambda: _marks(shown)))
         return [*news, self._spectrum(shown)]
+
+    def _samples(self, run: int, first: int, buckets: Buckets) -> str:
+        """Viewers choose channels, so each channel is written once, for all who watch it."""
+        stretch = buckets.since(first)
+        if stretch is None:
+            return ""
+        span = (run, first, self._next_bucket)
+        texts = [
+            self._cache.text(f"samples {name}", span, partial(_channel, stretch, name))
+            for name in self._channels
+            if name in stretch.names
+        ]
+        begin = f'"run":{run},"start_s":{stretch.start_s:.3f},"width_s":{stretch.width_s:.3f}'
+        return f'event: samples\ndata: {{{begin},"channels":{{{",".join(texts)}}}}}\n\n'
 
     def _spectrum(self, shown: LiveView) -> str:
         now_s = time.monotonic()
@@ -132,16 +161,19 @@ def _state(service: Service, bench: str) -> dict[str, Any]:
     }
 
 
-def _samples(run: int, stretch: Stretch | None) -> str:
-    if stretch is None:
-        return ""
-    columns = {name: stretch.names.index(name) for name in CHANNELS if name in stretch.names}
-    channels = {
-        name: {"lowest": numbers(stretch.lowest[:, column]), "highest": numbers(stretch.highest[:, column])}
-        for name, column in columns.items()
+def _channel(stretch: Stretch, name: str) -> str:
+    column = stretch.names.index(name)
+    values = {
+        "lowest": numbers(stretch.lowest[:, column]),
+        "highest": numbers(stretch.highest[:, column]),
     }
-    start_s, width_s = round(stretch.start_s, 3), round(stretch.width_s, 3)
-    return _event("samples", {"run": run, "start_s": start_s, "width_s": width_s, "channels": channels})
+    return f"{json.dumps(name)}:{_json(values)}"
+
+
+def _marks(shown: LiveView) -> str:
+    overview = shown.live.overview()
+    found = marks_of(overview.tables, overview) if overview else []
+    return _event("marks", {"run": shown.run, "marks": found})
 
 
 def _spectrum(run: int, found: Spectrum | None) -> str:
@@ -151,5 +183,13 @@ def _spectrum(run: int, found: Spectrum | None) -> str:
     return _event("spectrum", {"run": run, "band_energy": found.band_energy, **values})
 
 
+def _criterion(one: CriterionResult) -> dict[str, Any]:
+    return one.model_dump(mode="json", exclude={"definition"}) | {"margin": one.margin}
+
+
 def _event(name: str, data: dict[str, Any]) -> str:
-    return f"event: {name}\ndata: {json.dumps(data, allow_nan=False, separators=(',', ':'))}\n\n"
+    return f"event: {name}\ndata: {_json(data)}\n\n"
+
+
+def _json(data: dict[str, Any]) -> str:
+    return json.dumps(data, allow_nan=False, separators=(",", ":"))

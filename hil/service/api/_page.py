@@ -18,11 +18,18 @@ def add_to(app: FastAPI) -> None:
         kind = _KINDS.get(place.name.rpartition(".")[2])
         if kind is not None:
             _add(app, "/" if place.name == "index.html" else f"/{place.name}", place.read_bytes(), kind)
-    colours = (
-        f":root {{ color-scheme: light dark; {css_variables('light')} }}\n"
-        f"@media (prefers-color-scheme: dark) {{ :root {{ {css_variables('dark')} }} }}\n"
+    _add(app, "/colours.css", _colours().encode(), "text/css")
+
+
+def _colours() -> str:
+    """The house's colours as the system has them, or as `data-theme` of the document says."""
+    light, dark = css_variables("light"), css_variables("dark")
+    return (
+        f":root {{ color-scheme: light dark; {light} }}\n"
+        f"@media (prefers-color-scheme: dark) {{ :root {{ {dark} }} }}\n"
+        f':root[data-theme="light"] {{ color-scheme: light; {light} }}\n'
+        f':root[data-theme="dark"] {{ color-scheme: dark; {dark} }}\n'
     )
-    _add(app, "/colours.css", colours.encode(), "text/css")
 
 
 def _add(app: FastAPI, path: str, content: bytes, kind: str) -> None:

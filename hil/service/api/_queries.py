@@ -5,6 +5,7 @@ from __future__ import annotations
 from fastapi import Request
 from fastapi.dependencies.models import Dependant
 from fastapi.routing import APIRoute
+from pydantic import BaseModel
 
 from hil.core.errors.wording import did_you_mean, printable
 from hil.service.api._problems import RefusedError
@@ -34,5 +35,11 @@ def refuse_unknown_query(request: Request) -> None:
 
 def _names_of(dependant: Dependant) -> set[str]:
     """Names of the query's parameters, also those that the address's dependencies take."""
-    own = {field.alias for field in dependant.query_params}
+    own: set[str] = set()
+    for field in dependant.query_params:
+        kind = field.field_info.annotation
+        if isinstance(kind, type) and issubclass(kind, BaseModel):
+            own |= set(kind.model_fields)
+        else:
+            own.add(field.alias)
     return own.union(*(_names_of(one) for one in dependant.dependencies))

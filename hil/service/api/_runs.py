@@ -91,13 +91,13 @@ async def queue_run(wanted: RunWanted, service: TheService, me: Operator) -> Run
 async def get_run(run: RunId, service: TheService, me: Viewer) -> RunData:
     """A run."""
     del me
-    return service.with_progress(_there(service, run))
+    return service.with_progress(there(service, run))
 
 
 @router.patch("/{run}", name="change_run")
 async def change_run(run: RunId, change: RunChange, service: TheService, me: Engineer) -> RunData:
     """Change the place of a run in its queue."""
-    found = _there(service, run)
+    found = there(service, run)
     if not service.runs.set_priority(run, change.priority):
         raise RefusedError(409, f"run {run} is no longer queued")
     return _done(service, me, found, "priority", str(change.priority))
@@ -106,7 +106,7 @@ async def change_run(run: RunId, change: RunChange, service: TheService, me: Eng
 @router.post("/{run}/approve", name="approve_run")
 async def approve_run(run: RunId, service: TheService, me: Engineer) -> RunData:
     """Approve a run of a hazardous plan; not possible for the person who queued it."""
-    found = _there(service, run)
+    found = there(service, run)
     if found.requested_by == me.name:
         raise RefusedError(403, "a second person approves it", where=f"run {run}")
     if not service.runs.approve(run, me.name):
@@ -118,27 +118,27 @@ async def approve_run(run: RunId, service: TheService, me: Engineer) -> RunData:
 async def pause_run(run: RunId, service: TheService, me: Operator) -> RunData:
     """Hold a run at its next safe point; without an answer it ends after ten minutes."""
     _running(service, run).process.pause()
-    return _done(service, me, _there(service, run), "pause")
+    return _done(service, me, there(service, run), "pause")
 
 
 @router.post("/{run}/resume", name="resume_run")
 async def resume_run(run: RunId, service: TheService, me: Operator) -> RunData:
     """Resume a held run."""
     _running(service, run).process.resume()
-    return _done(service, me, _there(service, run), "resume")
+    return _done(service, me, there(service, run), "resume")
 
 
 @router.post("/{run}/answer", name="answer_run")
 async def answer_run(run: RunId, answer: Answer, service: TheService, me: Operator) -> RunData:
     """Answer the operator's prompt of a run."""
     _running(service, run).process.answer(answer.text)
-    return _done(service, me, _there(service, run), "answer", answer.text)
+    return _done(service, me, there(service, run), "answer", answer.text)
 
 
 @router.post("/{run}/abort", name="abort_run")
 async def abort_run(run: RunId, service: TheService, me: Operator) -> RunData:
     """End a run: a queued run is cancelled; an active run does its end steps and keeps its data."""
-    found = _there(service, run)
+    found = there(service, run)
     running = service.running_run(run)
     if running is not None:
         running.process.end()
@@ -157,7 +157,7 @@ async def get_run_file(
 ) -> Response:
     """A file of a finished run, or the `range` of it; from the store if the service no longer has it."""
     del me
-    if name not in service.with_progress(_there(service, run)).files:
+    if name not in service.with_progress(there(service, run)).files:
         raise missing("file", name)
     path = service.queue.folder_of(run) / name
     other, shown = "application/octet-stream" if path.suffix == ".mcap" else "text/plain", f"{run}-{name}"
@@ -168,7 +168,12 @@ async def get_run_file(
     return left_file(path, shown, other)
 
 
-def _there(service: Service, run: int) -> RunData:
+def there(service: Service, run: int) -> RunData:
+    """A run that there is.
+
+    Raises:
+        RefusedError: there is none.
+    """
     found = service.runs.get(run)
     if found is None:
         raise missing("run", run)
@@ -176,14 +181,14 @@ def _there(service: Service, run: int) -> RunData:
 
 
 def _running(service: Service, run: int) -> RunningRun:
-    there, found = _there(service, run), service.running_run(run)
-    if found is None and there.bench not in service.benches:
+    wanted, found = there(service, run), service.running_run(run)
+    if found is None and wanted.bench not in service.benches:
         raise RefusedError(
-            409, f"run {run} belongs to another service", fix=f"use the service of {there.bench}"
+            409, f"run {run} belongs to another service", fix=f"use the service of {wanted.bench}"
         )
     if found is None:
         raise RefusedError(409, f"run {run} is not active")
-    bench = service.benches[there.bench]
+    bench = service.benches[wanted.bench]
     if isinstance(bench, RemoteBench) and bench.agent.away:
         raise RefusedError(
             409, bench.state()[1], fix="it can be ended; its agent gets the order when it reconnects"
@@ -196,4 +201,4 @@ def _done(service: Service, me: Me, run: RunData, action: str, detail: str = "")
     service.log.add(me.name, me.role, action, f"run {run.id}", detail)
     service.wake(run.bench)
     service.changed(run.bench)
-    return service.with_progress(_there(service, run.id))
+    return service.with_progress(there(service, run.id))

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from hil.core.channels import COMFORT_BAND_HZ, TIME
 from hil.core.errors import BadInputError
-from hil.core.recording import SEGMENT, FollowedRecording, read_recording
+from hil.core.recording import SEGMENT, EnvelopeBuilder, FollowedRecording, Overview, read_recording
 from hil.core.result import CriterionResult, Segment
 from test_plans import Plan, judge
 from test_plans.metrics import energy_within, periodogram
@@ -142,6 +142,7 @@ class LiveRun:
         self._file: FollowedRecording | None = None
         self._recent = np.zeros((2, 0))  # times and values of the spectrum's channel
         self._judged: frozenset[str] = frozenset()
+        self._envelope: EnvelopeBuilder | None = None
         self.buckets = Buckets()
         self.time_s = 0.0
 
@@ -157,14 +158,40 @@ class LiveRun:
         if self._file is None:
             return
         try:
-            rows = self._file.fetch()
+            parts = self._file.fetch_parts()
         except (BadInputError, OSError, ValueError):  # a damaged file is the run's to report
             self.close()
             return
-        if len(rows):
+        if parts:
+            self._envelope = self._envelope or EnvelopeBuilder(self._file.names[1:])
+            for position, part in parts:
+                self._envelope.add(position, part)
+            rows = np.concatenate([part for _, part in parts])
             self.time_s = float(rows[-1, 0])
             self.buckets.add(self._file.names, rows)
             self._remember(rows)
+
+    @property
+    def path(self) -> Path:
+        """Where the recording lies."""
+        return self._path
+
+    @property
+    def over(self) -> bool:
+        """Whether all of the recording has been read, to its regular end."""
+        return self._file is not None and self._file.over
+
+    def overview(self) -> Overview | None:
+        """All that was measured until now; None before the first sample."""
+        envelope = self._envelope.envelope() if self._envelope else None
+        if envelope is None or self._file is None:
+            return None
+        return Overview(envelope, dict(self._file.tables), tuple(self._file.events), self._file.row_ids)
+
+    @property
+    def marks(self) -> tuple[int, int]:
+        """Changes whenever there is a new segment or event."""
+        return (len(self._file.tables), len(self._file.events)) if self._file is not None else (0, 0)
 
     def spectrum(self) -> Spectrum | None:
         """Of the last seconds; None while there are none."""

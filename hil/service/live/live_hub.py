@@ -6,14 +6,18 @@ What many viewers get is encoded once.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import time
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from hil.core.errors import HilError
+from hil.core.recording import write_overview
 from hil.core.result import CriterionResult
 from hil.engine import RECORDING
+from hil.execution.data_folder import folder_of
 from hil.execution.run_execution import PLAN, RunningRun
 from hil.service.live.live import LiveRun
 from test_plans import plan_from_text
@@ -46,6 +50,7 @@ class LiveView:
     live: LiveRun
     criteria: tuple[CriterionResult, ...] = ()
     judged_s: float = 0.0
+    kept: bool = False  # its overview, for when it is over
     looked_s: float = field(default_factory=time.monotonic)
 
 
@@ -55,12 +60,16 @@ class LiveHub:
     Args:
         benches: names of all benches.
         running: the run under way on a bench.
+        overviews: where what is read of a run is kept for those who look at it afterwards.
     """
 
     def __init__(
-        self, benches: Callable[[], Iterable[str]], running: Callable[[str], RunningRun | None]
+        self,
+        benches: Callable[[], Iterable[str]],
+        running: Callable[[str], RunningRun | None],
+        overviews: Path,
     ) -> None:
-        self._benches, self._running = benches, running
+        self._benches, self._running, self._overviews = benches, running, overviews
         self.viewers: defaultdict[str, set[asyncio.Event]] = defaultdict(set)
         self.caches: defaultdict[str, BroadcastCache] = defaultdict(BroadcastCache)  # of each bench
         self._runs: dict[str, LiveView] = {}
@@ -83,6 +92,10 @@ class LiveHub:
         """Counts what `changed` was called for."""
         return self._version[bench]
 
+    def overview_folder(self, run: int) -> Path:
+        """Where the overview of a run is kept."""
+        return folder_of(self._overviews, run)
+
     async def follow(self, closing: Callable[[], bool]) -> None:
         """Read what runs measure, until the service is closed."""
         next_s = time.monotonic()
@@ -90,6 +103,7 @@ class LiveHub:
             for name in list(self._benches()):
                 self._follow(name)
                 await self._judge(name)
+                await self._keep(name)
             next_s = max(next_s + _LOOK_S, time.monotonic())
             await asyncio.sleep(next_s - time.monotonic())
 
@@ -122,6 +136,16 @@ class LiveHub:
         if found is not None:
             shown.criteria = found
             self.changed(bench)
+
+    async def _keep(self, bench: str) -> None:
+        """Write down what was read of a run that is over; where that fails, it is read again when needed."""
+        shown = self._runs.get(bench)
+        if shown is None or shown.kept or not shown.live.over:
+            return
+        shown.kept, overview = True, shown.live.overview()
+        if overview is not None:
+            with contextlib.suppress(OSError, HilError):
+                await asyncio.to_thread(write_overview, overview, self.overview_folder(shown.run))
 
     def _tell(self, bench: str) -> None:
         for event in self.viewers[bench]:

@@ -11,6 +11,7 @@ from hil.service.store._opening import open_database
 from hil.service.store._people import SESSION_S, TokenStore
 from hil.service.store._presence import DatabaseAwayError, Presence
 from hil.service.store._results import ResultKind, ResultStore, SharedJob
+from hil.service.store._run_list import RunList
 from hil.service.store._runs import NewRun, RunStore
 from hil.service.store._tables import Base
 
@@ -33,6 +34,7 @@ __all__ = [
     "RegisteredBench",
     "ResultKind",
     "ResultStore",
+    "RunList",
     "RunStore",
     "SharedJob",
     "TokenStore",

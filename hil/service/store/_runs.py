@@ -21,8 +21,11 @@ from hil.service.store._tables import BenchRow, CriterionRow, RunRow
 
 _SAME = (
     "id", "plan", "title", "bench", "state", "priority", "hazard", "requested_by", "approved_by",
-    "exit_code", "verdict", "safe_state", "reason",
+    "exit_code", "verdict", "safe_state", "reason", "dut",
 )  # fmt: skip
+_MOMENTS = ("queued_at", "started_at", "ended_at")
+#: Columns that `run_data` reads.
+RUN_COLUMNS = frozenset({*_SAME, *_MOMENTS, "values_json"})
 _WAITING: tuple[RunState, ...] = ("waiting_approval", "queued")
 
 
@@ -76,16 +79,16 @@ class RunStore:
             with self._transaction() as session:
                 session.add(row)
                 session.flush()
-                return _data(row), True
+                return run_data(row), True
         except IntegrityError:
             with self._transaction() as session:
-                return _data(session.scalars(select(RunRow).where(RunRow.key == wanted.key)).one()), False
+                return run_data(session.scalars(select(RunRow).where(RunRow.key == wanted.key)).one()), False
 
     def get(self, run: int) -> RunData | None:
         """A run by its number."""
         with self._transaction() as session:
             row = session.get(RunRow, run)
-            return None if row is None else _data(row)
+            return None if row is None else run_data(row)
 
     def all(
         self,
@@ -105,7 +108,7 @@ class RunStore:
         if verdicts:
             chosen = chosen.where(RunRow.verdict.in_(verdicts))
         with self._transaction() as session:
-            return [_data(row) for row in session.scalars(chosen)]
+            return [run_data(row) for row in session.scalars(chosen)]
 
     def waiting(self, bench: str) -> int:
         """How many wait for a bench."""
@@ -127,7 +130,7 @@ class RunStore:
         chosen = chosen.order_by(RunRow.priority.desc(), RunRow.id).limit(1)
         with self._transaction() as session:
             row = session.scalars(chosen).first()
-            return None if row is None else _data(row)
+            return None if row is None else run_data(row)
 
     def take(self, run: int, service: str) -> TakenRun | None:
         """Mark a queued run as running, before anything of it is started.
@@ -156,13 +159,13 @@ class RunStore:
         """Runs that a service has started and that have not ended, as far as is written."""
         mine = RunRow.state == "running", RunRow.service.in_((service, ""))
         with self._transaction() as session:
-            return [_data(row) for row in session.scalars(select(RunRow).where(*mine))]
+            return [run_data(row) for row in session.scalars(select(RunRow).where(*mine))]
 
     def of_service(self, run: int, service: str) -> RunData | None:
         """A run, if that service, or agent, has started it and no one else has its files."""
         with self._transaction() as session:
             row = session.get(RunRow, run)
-            return _data(row) if row is not None and row.service == service else None
+            return run_data(row) if row is not None and row.service == service else None
 
     def delivered(
         self,
@@ -269,7 +272,7 @@ def _ended(
     result: RunResult | None,
     dut: str,
 ) -> bool:
-    if not _moved(session, run, out_of, **changes):
+    if not _moved(session, run, out_of, **changes, dut=dut[:200]):
         return False
     session.add_all(_criterion(run, one, dut) for one in (result.criteria if result else ()))
     return True
@@ -305,7 +308,7 @@ def _point(row: CriterionRow, ended_at: datetime.datetime | None) -> TrendPoint:
 
 def _taken(row: RunRow) -> TakenRun:
     return TakenRun(
-        data=_data(row),
+        data=run_data(row),
         plan_text=row.plan_text,
         plan_source=row.plan_source,
         confirmed_by=row.confirmed_by,
@@ -313,10 +316,9 @@ def _taken(row: RunRow) -> TakenRun:
     )
 
 
-def _data(row: RunRow) -> RunData:
-    moments: dict[str, datetime.datetime | None] = {
-        name: aware(getattr(row, name)) for name in ("queued_at", "started_at", "ended_at")
-    }
+def run_data(row: RunRow) -> RunData:
+    """A run as the API has it."""
+    moments: dict[str, datetime.datetime | None] = {name: aware(getattr(row, name)) for name in _MOMENTS}
     return RunData.model_validate(
         {
             **{name: getattr(row, name) for name in _SAME},

@@ -17,11 +17,19 @@ class Base(DeclarativeBase):
 class RunRow(Base):
     """A run; `plan_text` is the plan with its variables as chosen, `service` the one that has started it.
 
-    `kept_at`: when the archive had all of its files.
+    `kept_at`: when the archive had all of its files. `dut`: the tested device, '' until it has ended.
     """
 
     __tablename__ = "runs"
-    __table_args__ = (Index("runs_by_bench_and_state", "bench", "state"),)
+    __table_args__ = (
+        Index("runs_by_bench_and_state", "bench", "state"),
+        # All that the list of runs is chosen by, so that rows with their plans' texts are not gone through.
+        Index(
+            "runs_listed",
+            *("plan", "title", "bench", "verdict", "dut", "requested_by", "state", "ended_at", "queued_at"),
+        ),
+        Index("runs_by_end", "ended_at"),
+    )
 
     id: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
     key: Mapped[str | None] = mapped_column(String(100), unique=True)
@@ -47,6 +55,7 @@ class RunRow(Base):
     verdict: Mapped[str | None] = mapped_column(String(10))
     safe_state: Mapped[str | None] = mapped_column(String(20))
     reason: Mapped[str] = mapped_column(Text)
+    dut: Mapped[str] = mapped_column(String(200), server_default="")
 
 
 class BenchRow(Base):
@@ -83,6 +92,7 @@ class CriterionRow(Base):
     """A criterion of a run that is over: what trends are made of."""
 
     __tablename__ = "criteria"
+    __table_args__ = (Index("criteria_by_id", "id", "run", "value"),)
 
     run: Mapped[int] = mapped_column(primary_key=True)
     id: Mapped[str] = mapped_column(String(200), primary_key=True)

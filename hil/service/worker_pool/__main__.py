@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import json
 import logging
 import os
@@ -13,23 +14,26 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from hil.core.errors import BadInputError, HilError
-from hil.service.worker_pool import _campaigning, _comparing, _designing, plan_reading
 from hil.service.worker_pool._worker_pool import ANSWERED, READING, REFUSED
 
 _IDLE_S = 600.0
-TASKS: dict[str, Callable[..., dict[str, Any]]] = {
-    "comparison": _comparing.comparison,
-    "traces": _comparing.traces,
-    "draft": _designing.draft,
-    "design": _designing.designed,
-    "fitted": _designing.fitted,
-    "campaign": _campaigning.given,
-    "campaign_so_far": _campaigning.so_far,
-    "campaign_table": _campaigning.table,
-    "read_plan": plan_reading.plan,
-    "read_model": plan_reading.model,
-    "read_controller": plan_reading.controller,
-    "campaign_examples": _campaigning.examples,
+#: Each in its module, which is imported when it is asked for first: not every worker does everything.
+TASKS = {
+    "comparison": "_comparing:comparison",
+    "traces": "_comparing:traces",
+    "run_overview": "_viewing:overview",
+    "run_spectrum": "_viewing:spectrum",
+    "run_samples": "_viewing:samples",
+    "draft": "_designing:draft",
+    "design": "_designing:designed",
+    "fitted": "_designing:fitted",
+    "campaign": "_campaigning:given",
+    "campaign_so_far": "_campaigning:so_far",
+    "campaign_table": "_campaigning:table",
+    "read_plan": "plan_reading:plan",
+    "read_model": "plan_reading:model",
+    "read_controller": "plan_reading:controller",
+    "campaign_examples": "_campaigning:examples",
 }
 
 
@@ -48,7 +52,7 @@ def main() -> None:
 def _answer(question: dict[str, Any]) -> bytes:
     try:
         with _limited(question["task"], question["read_within_s"]):
-            return ANSWERED + _json(TASKS[question["task"]](**question["asked"]))
+            return ANSWERED + _json(_task(question["task"])(**question["asked"]))
     except HilError as error:
         bad = isinstance(error, BadInputError)
         return _refusal(error.what, error.where, error.fix, bad_input=bad)
@@ -56,6 +60,14 @@ def _answer(question: dict[str, Any]) -> bytes:
         logging.getLogger(__name__).exception("internal error")
         what = f"internal error: {type(error).__name__}: {error}"
         return _refusal(what, question["task"], "please report it", bad_input=False)
+
+
+def _task(name: str) -> Callable[..., dict[str, Any]]:
+    module, _, function = TASKS[name].partition(":")
+    found: Callable[..., dict[str, Any]] = getattr(
+        importlib.import_module(f"{__package__}.{module}"), function
+    )
+    return found
 
 
 @contextlib.contextmanager

@@ -30,10 +30,13 @@ class WorkerPool:
     Args:
         niceness: added to that of the service.
         read_within_s: of a processor, for what people give.
+        within_s: for any answer.
     """
 
-    def __init__(self, niceness: int, read_within_s: float = READ_WITHIN_S) -> None:
-        self._niceness, self._read_within_s = niceness, read_within_s
+    def __init__(
+        self, niceness: int, read_within_s: float = READ_WITHIN_S, within_s: float = _WITHIN_S
+    ) -> None:
+        self._niceness, self._read_within_s, self._within_s = niceness, read_within_s, within_s
         self._turn = asyncio.Lock()
         self._process: asyncio.subprocess.Process | None = None
 
@@ -58,11 +61,11 @@ class WorkerPool:
         )
         async with self._turn:
             try:
-                line = await asyncio.wait_for(self._answer(question), _WITHIN_S)
+                line = await asyncio.wait_for(self._answer(question), self._within_s)
             except BaseException as error:
                 self.close()  # its answer would be taken for the next question's
                 if isinstance(error, TimeoutError):
-                    raise BenchError(f"took more than {_WITHIN_S:g} s", where=task) from error
+                    raise BenchError(f"took more than {self._within_s:g} s", where=task) from error
                 raise
         if not line:
             raise BenchError("its process ended", where=task, fix="look at the service's log")

@@ -1,0 +1,80 @@
+// Every view has an address: what it says, and how it is written.
+
+export const BASE = "/app";
+
+export type Place =
+  | { view: "benches" | "runs" | "compare" | "plans" | "models" | "controllers" | "diagnoses" | "campaigns" | "audit" | "settings" }
+  | { view: "bench" | "panel"; bench: string }
+  | { view: "run"; run: number }
+  | { view: "plan" | "model" | "controller"; name: string }
+  | { view: "diagnosis" | "campaign"; id: number }
+  | { view: "missing"; path: string };
+
+const LISTS = ["benches", "runs", "compare", "plans", "models", "controllers", "diagnoses", "campaigns", "audit", "settings"] as const;
+const NAMED = { plans: "plan", models: "model", controllers: "controller" } as const;
+const NUMBERED = { diagnoses: "diagnosis", campaigns: "campaign" } as const;
+
+export function placeOf(path: string): Place {
+  const missing: Place = { view: "missing", path };
+  const [head = "", name, more, ...rest] = partsOf(path);
+  if (rest.length) return missing;
+  if (head === "") return { view: "benches" };
+  const list = LISTS.find((one) => one === head);
+  if (list === undefined) return missing;
+  if (name === undefined) return { view: list };
+  if (list === "benches") return more === undefined ? { view: "bench", bench: name } : more === "panel" ? { view: "panel", bench: name } : missing;
+  if (more !== undefined) return missing;
+  if (list in NAMED) return { view: NAMED[list as keyof typeof NAMED], name };
+  const id = numberOf(name);
+  if (id === null) return missing;
+  if (list === "runs") return { view: "run", run: id };
+  return list in NUMBERED ? { view: NUMBERED[list as keyof typeof NUMBERED], id } : missing;
+}
+
+function partsOf(path: string): string[] {
+  const below = path.startsWith(BASE) ? path.slice(BASE.length) : path;
+  try {
+    return below.split("/").filter(Boolean).map(decodeURIComponent);
+  } catch { // not an encoding
+    return ["?"];
+  }
+}
+
+function numberOf(text: string): number | null {
+  return /^[1-9][0-9]{0,9}$/.test(text) ? Number(text) : null;
+}
+
+const name = encodeURIComponent;
+
+export const to = {
+  list: (view: (typeof LISTS)[number]): string => `${BASE}/${view}`,
+  bench: (bench: string): string => `${BASE}/benches/${name(bench)}`,
+  panel: (bench: string): string => `${BASE}/benches/${name(bench)}/panel`,
+  run: (run: number): string => `${BASE}/runs/${run}`,
+  plan: (plan: string): string => `${BASE}/plans/${name(plan)}`,
+  model: (model: string): string => `${BASE}/models/${name(model)}`,
+  controller: (controller: string): string => `${BASE}/controllers/${name(controller)}`,
+  diagnosis: (id: number): string => `${BASE}/diagnoses/${id}`,
+  campaign: (id: number): string => `${BASE}/campaigns/${id}`,
+  compare: (first: number, other: number): string => `${BASE}/compare?runs=${first},${other}`,
+};
+
+const TITLES: Record<(typeof LISTS)[number], string> = {
+  benches: "Benches", runs: "Runs", compare: "Compare runs", plans: "Plans", models: "Models", controllers: "Controllers",
+  diagnoses: "Diagnoses", campaigns: "Campaigns", audit: "Audit log", settings: "Settings",
+};
+
+export function titleOf(place: Place): string {
+  switch (place.view) {
+    case "bench": return `Bench ${place.bench}`;
+    case "panel": return `Operator panel of ${place.bench}`;
+    case "run": return `Run ${place.run}`;
+    case "plan": return `Plan ${place.name}`;
+    case "model": return `Model ${place.name}`;
+    case "controller": return `Controller ${place.name}`;
+    case "diagnosis": return `Diagnosis ${place.id}`;
+    case "campaign": return `Campaign ${place.id}`;
+    case "missing": return "No such page";
+    default: return TITLES[place.view];
+  }
+}

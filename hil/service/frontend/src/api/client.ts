@@ -1,0 +1,96 @@
+// Requests to the service, and errors in its words.
+
+import type { Health, Problem } from "./types.ts";
+
+export const API = "/api/v1";
+
+export class Refused extends Error {
+  readonly status: number;
+  readonly fix: string;
+
+  constructor(status: number, problem: Problem) {
+    super(problem.where ? `${problem.where}: ${problem.what}` : problem.what);
+    this.status = status;
+    this.fix = problem.fix ?? "";
+  }
+}
+
+type Body = object | string | undefined;
+
+// A text is sent as a file, anything else as JSON.
+async function fetched(method: string, path: string, body: Body, signal?: AbortSignal): Promise<string> {
+  const options: RequestInit = { method, headers: {}, signal: signal ?? null };
+  if (body !== undefined) {
+    const isFile = typeof body === "string";
+    options.headers = { "content-type": isFile ? "text/plain" : "application/json" };
+    options.body = isFile ? body : JSON.stringify(body);
+  }
+  let answer: Response;
+  try {
+    answer = await fetch(`${API}${path}`, options);
+  } catch (error) {
+    if (signal?.aborted) throw error;
+    throw new Refused(0, { what: "the service does not answer", where: "", fix: "" });
+  }
+  const text = await answer.text();
+  if (answer.ok) return text;
+  throw new Refused(answer.status, problemOf(answer.status, text));
+}
+
+function problemOf(status: number, text: string): Problem {
+  try {
+    return JSON.parse(text) as Problem;
+  } catch { // a proxy's answer
+    return { what: `status ${status}`, where: "", fix: "" };
+  }
+}
+
+export async function ask<T>(method: string, path: string, body?: Body, signal?: AbortSignal): Promise<T> {
+  const text = await fetched(method, path, body, signal);
+  return (text ? JSON.parse(text) : null) as T;
+}
+
+export const get = <T>(path: string, signal?: AbortSignal): Promise<T> => ask<T>("GET", path, undefined, signal);
+export const post = <T>(path: string, body?: object): Promise<T> => ask<T>("POST", path, body);
+export const getText = (path: string, signal?: AbortSignal): Promise<string> => fetched("GET", path, undefined, signal);
+export const fileUrl = (run: number, name: string): string => `${API}/runs/${run}/files/${encodeURIComponent(name)}`;
+
+const STOP_MS = 30_000;
+const AGAIN_MS = 50;
+let stopUrl = "";
+
+// Where the service takes emergency stops whatever else it does: asked beforehand, for a flooded service answers late.
+export async function findStopPost(): Promise<void> {
+  stopUrl = (await get<Health>("/health")).stop_url ?? "";
+}
+
+// Both ways at the same moment; the first that has taken it is enough. A flooded service closes connections: a way
+// on which no one answers is tried again.
+export async function stopNow(bench: string): Promise<void> {
+  const path = bench ? `/benches/${encodeURIComponent(bench)}/emergency-stop` : "/emergency-stop";
+  const ways = [insist(() => post(path))];
+  if (stopUrl) ways.push(insist(() => byStopPost(path)));
+  try {
+    await Promise.any(ways);
+  } catch (error) {
+    throw error instanceof AggregateError ? error.errors[0] : error;
+  }
+}
+
+async function byStopPost(path: string): Promise<void> {
+  const answer = await fetch(`${stopUrl}${API}${path}`, { method: "POST", credentials: "include" });
+  if (!answer.ok) throw new Refused(answer.status, { what: `status ${answer.status}`, where: "", fix: "" });
+}
+
+async function insist(way: () => Promise<unknown>): Promise<void> {
+  const untilMs = Date.now() + STOP_MS;
+  for (;;) {
+    try {
+      await way();
+      return;
+    } catch (error) {
+      if ((error instanceof Refused && error.status) || Date.now() > untilMs) throw error;
+      await new Promise((resolve) => setTimeout(resolve, AGAIN_MS));
+    }
+  }
+}

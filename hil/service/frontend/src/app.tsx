@@ -1,0 +1,69 @@
+// The frame of every view: menu, who is signed in, the emergency stop, the last refusal.
+
+import type { JSX } from "preact";
+import { useEffect } from "preact/hooks";
+import { findStopPost, Refused } from "./api/client.ts";
+import { titleOf, to, type Place } from "./addresses.ts";
+import { refusal } from "./data.ts";
+import { usePlace, useTitle } from "./router.ts";
+import { session } from "./session.ts";
+import { MENU } from "./shell/commands.ts";
+import { Palette, paletteOpen } from "./shell/palette.tsx";
+import { SignIn, signOut } from "./shell/sign-in.tsx";
+import { benchInSight, StopButton } from "./shell/stop.tsx";
+import { useStore } from "./store.ts";
+import { View } from "./views/view.tsx";
+
+const STOP_POST_MS = 5000;
+
+export function App(): JSX.Element {
+  const place = usePlace();
+  const who = useStore(session);
+  useTitle(who.state === "out" ? "Sign in" : titleOf(place));
+  useEffect(() => {
+    const look = () => void findStopPost().catch(() => {});
+    look();
+    const timer = setInterval(look, STOP_POST_MS);
+    return () => clearInterval(timer);
+  }, []);
+  useEffect(() => {
+    if (!("bench" in place) && place.view !== "run") benchInSight.value = "";
+    refusal.value = null;
+  }, [place]);
+  return (
+    <>
+      <a class="skip" href="#main" onClick={(event) => { event.preventDefault(); document.getElementById("main")?.focus(); }}>Skip to the content</a>
+      <header class="top">
+        <div class="bar">
+          <a class="home" href={to.list("benches")}>Bench service</a>
+          {who.state === "in" ? <button type="button" class="find" onClick={() => { paletteOpen.value = true; }}>Find <kbd>Ctrl K</kbd></button> : null}
+          {who.state === "in" && who.me.tokens ? <span class="who">{`${who.me.name}, ${who.me.role}`} <button type="button" class="plain" onClick={() => void signOut()}>Sign out</button></span> : null}
+          <StopButton />
+        </div>
+        {who.state === "in" ? <Menu place={place} /> : null}
+      </header>
+      <main id="main" tabIndex={-1}>
+        <Refusal />
+        {who.state === "in" ? <View place={place} /> : who.state === "out" ? <SignIn /> : <p class="quiet">Asking the service …</p>}
+      </main>
+      <Palette />
+    </>
+  );
+}
+
+function Menu({ place }: { place: Place }): JSX.Element {
+  const of = { bench: "benches", panel: "benches", run: "runs", plan: "plans", model: "models", controller: "controllers", diagnosis: "diagnoses", campaign: "campaigns" } as Record<string, string>;
+  const list = of[place.view] ?? place.view;
+  return (
+    <nav class="menu" aria-label="Pages">
+      {MENU.map(([view, name]) => <a key={view} href={to.list(view)} aria-current={view === list ? "page" : undefined}>{name}</a>)}
+    </nav>
+  );
+}
+
+function Refusal(): JSX.Element | null {
+  const error = useStore(refusal);
+  if (!error) return null;
+  const fix = error instanceof Refused ? error.fix : "";
+  return <p class="alarm" role="alert">{fix ? `${error.message}\n${fix}` : error.message}</p>;
+}

@@ -1,0 +1,56 @@
+// What the service answers, kept while it is asked again; and work that may be refused.
+
+import { useCallback, useEffect, useRef, useState } from "preact/hooks";
+import { get } from "./api/client.ts";
+import { Store } from "./store.ts";
+
+export interface Asked<T> {
+  data: T | null;
+  error: Error | null;
+  loading: boolean;
+  again: () => void;
+}
+
+// The answer of a path, asked again every so many milliseconds while the page is in sight; null asks nothing.
+export function useData<T>(path: string | null, everyMs = 0): Asked<T> {
+  const [found, setFound] = useState<{ path: string | null; data: T | null; error: Error | null; loading: boolean }>({ path, data: null, error: null, loading: path !== null });
+  const [turn, setTurn] = useState(0);
+  const shown = useRef("");
+  useEffect(() => {
+    if (path === null) return undefined;
+    const control = new AbortController();
+    const look = async () => {
+      try {
+        const data = await get<T>(path, control.signal);
+        const text = JSON.stringify(data);
+        if (text === shown.current) return;
+        shown.current = text;
+        setFound({ path, data, error: null, loading: false });
+      } catch (error) {
+        shown.current = "";
+        if (!control.signal.aborted) setFound((before) => ({ path, data: before.path === path ? before.data : null, error: error as Error, loading: false }));
+      }
+    };
+    shown.current = "";
+    setFound((before) => ({ ...before, loading: true }));
+    void look();
+    const timer = everyMs ? setInterval(() => { if (!document.hidden) void look(); }, everyMs) : 0;
+    return () => { control.abort(); clearInterval(timer); };
+  }, [path, everyMs, turn]);
+  const again = useCallback(() => setTurn((one) => one + 1), []);
+  const mine = found.path === path;
+  return { data: mine ? found.data : null, error: mine ? found.error : null, loading: found.loading || !mine, again };
+}
+
+// What was refused last, shown above every view until something else is done.
+export const refusal = new Store<Error | null>(null);
+
+export async function attempt<T>(work: () => Promise<T> | T): Promise<T | null> {
+  refusal.value = null;
+  try {
+    return await work();
+  } catch (error) {
+    refusal.value = error as Error;
+    return null;
+  }
+}

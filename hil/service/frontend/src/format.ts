@@ -1,0 +1,55 @@
+// Numbers and moments as people of the browser's language write them.
+
+const LOCALE = typeof navigator === "undefined" ? "en" : navigator.language;
+const formats = new Map<string, Intl.NumberFormat>();
+
+function formatOf(options: Intl.NumberFormatOptions): Intl.NumberFormat {
+  const key = JSON.stringify(options);
+  const known = formats.get(key) ?? new Intl.NumberFormat(LOCALE, options);
+  formats.set(key, known);
+  return known;
+}
+
+// A measured value: three digits or so, as many as can be read at a glance.
+export function figure(value: number | null | undefined, unit = ""): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  const size = Math.abs(value);
+  const text = size >= 1e6 || (size < 1e-3 && size > 0)
+    ? formatOf({ notation: "scientific", maximumSignificantDigits: 3 }).format(value)
+    : fixed(value, size >= 100 ? 0 : size >= 10 ? 1 : size >= 0.1 || size === 0 ? 2 : 4);
+  return joined(text.replace("-", "−"), unit);
+}
+
+export const fixed = (value: number, digits: number): string =>
+  formatOf({ minimumFractionDigits: digits, maximumFractionDigits: digits }).format(value);
+
+export const percent = (share: number, digits = 0): string =>
+  formatOf({ style: "percent", minimumFractionDigits: digits, maximumFractionDigits: digits }).format(share);
+
+export const whole = (value: number): string => formatOf({ maximumFractionDigits: 0 }).format(value);
+
+export const joined = (text: string, unit: string): string => (unit && unit !== "1" ? `${text}\u00a0${unit}` : text);
+
+export function duration(seconds: number): string {
+  if (seconds < 60) return joined(fixed(seconds, seconds < 10 ? 1 : 0), "s");
+  const minutes = Math.floor(seconds / 60);
+  if (minutes < 60) return `${minutes} min ${Math.round(seconds - 60 * minutes)} s`;
+  return `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
+}
+
+const moments = new Intl.DateTimeFormat(LOCALE, { dateStyle: "medium", timeStyle: "short" });
+
+export const moment = (iso: string): string => moments.format(new Date(iso));
+
+const UNITS: Record<string, string> = { nm: "N m", rad_s: "rad/s", m_s: "m/s", s: "s", rad: "rad", degc: "°C", v: "V", a: "A", w: "W", hz: "Hz" };
+
+// A channel's name without its unit, in words.
+export function wordsOf(channel: string): string {
+  const ending = Object.keys(UNITS).filter((one) => channel.endsWith(`_${one}`)).sort((one, other) => other.length - one.length)[0];
+  const bare = ending ? channel.slice(0, -ending.length - 1) : channel;
+  return bare.replaceAll("_", " ");
+}
+
+export const limitText = (upper: number | null | undefined, lower: number | null | undefined, unit = ""): string =>
+  [lower === null || lower === undefined ? "" : `≥ ${figure(lower, unit)}`, upper === null || upper === undefined ? "" : `≤ ${figure(upper, unit)}`]
+    .filter(Boolean).join(", ") || "–";

@@ -1,0 +1,33 @@
+// Which entries of the palette have the words that were typed, the nearest first.
+
+export interface Entry {
+  kind: string;
+  name: string;
+  about: string;
+  path?: string;
+  act?: () => void;
+}
+
+export function found(entries: Entry[], text: string, most: number): Entry[] {
+  const words = text.toLowerCase().split(/\s+/).filter(Boolean);
+  const ranked = entries.map((entry, place) => ({ entry, place, rank: rankOf(entry, words) })).filter(({ rank }) => rank !== null) as { entry: Entry; place: number; rank: number }[];
+  ranked.sort((one, other) => one.rank - other.rank || one.place - other.place);
+  return ranked.slice(0, most).map(({ entry }) => entry);
+}
+
+// 0 where a name begins with every word; more the farther inside they stand; null where one is missing.
+function rankOf(entry: Entry, words: string[]): number | null {
+  const name = entry.name.toLowerCase(), all = `${name} ${entry.about} ${entry.kind}`.toLowerCase();
+  let rank = 0;
+  for (const word of words) {
+    if (name.startsWith(word)) continue;
+    if (beginsAWord(name, word)) rank += 1;
+    else if (name.includes(word)) rank += 2;
+    else if (beginsAWord(all, word)) rank += 3;
+    else if (all.includes(word)) rank += 4;
+    else return null;
+  }
+  return rank;
+}
+
+const beginsAWord = (text: string, word: string): boolean => text.split(/[\s_.\-,]+/).some((one) => one.startsWith(word));

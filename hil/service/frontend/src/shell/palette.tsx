@@ -1,0 +1,99 @@
+// The palette (Ctrl-K): finds any bench, plan, run, model, controller or command by its words.
+
+import type { JSX } from "preact";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { get } from "../api/client.ts";
+import type { Bench, Plan, Run } from "../api/types.ts";
+import { to } from "../addresses.ts";
+import { go } from "../router.ts";
+import { session } from "../session.ts";
+import { Store, useStore } from "../store.ts";
+import { found, type Entry } from "./matching.ts";
+import { commands } from "./commands.ts";
+
+export const paletteOpen = new Store(false);
+const MOST = 12;
+
+addEventListener("keydown", (event) => {
+  if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "k") {
+    event.preventDefault();
+    paletteOpen.value = !paletteOpen.value && session.value.state === "in";
+  }
+});
+
+export function Palette(): JSX.Element | null {
+  return useStore(paletteOpen) ? <Open /> : null;
+}
+
+function Open(): JSX.Element {
+  const dialog = useRef<HTMLDialogElement>(null);
+  const [text, setText] = useState("");
+  const [at, setAt] = useState(0);
+  const entries = useEntries();
+  const runs = useRuns(text);
+  const shown = useMemo(() => found([...entries, ...runs], text, MOST), [entries, runs, text]);
+  useEffect(() => { dialog.current?.showModal(); }, []);
+  useEffect(() => { document.getElementById(`entry-${at}`)?.scrollIntoView({ block: "nearest" }); }, [at]);
+  const close = () => { paletteOpen.value = false; };
+  const choose = (entry: Entry | undefined) => {
+    if (!entry) return;
+    close();
+    if (entry.path) go(entry.path); else entry.act?.();
+  };
+  const keyed = (event: KeyboardEvent) => {
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (step) setAt((one) => (one + step + shown.length) % Math.max(1, shown.length));
+    else if (event.key === "Enter") choose(shown[at]);
+    else return;
+    event.preventDefault();
+  };
+  return (
+    <dialog ref={dialog} class="palette" aria-label="Find" onClose={close} onClick={(event) => { if (event.target === dialog.current) close(); }}>
+      <input
+        type="text" role="combobox" aria-expanded="true" aria-controls="palette-list" aria-autocomplete="list" aria-activedescendant={`entry-${at}`}
+        aria-label="Find a plan, run, bench, model or command" placeholder="Plan, run, bench, model or command" autocomplete="off" spellcheck={false}
+        value={text} onInput={(event) => { setText(event.currentTarget.value); setAt(0); }} onKeyDown={keyed}
+      />
+      <ul id="palette-list" role="listbox" aria-label="Found">
+        {shown.map((entry, index) => (
+          <li key={`${entry.kind} ${entry.name}`} id={`entry-${index}`} role="option" aria-selected={index === at} onMouseMove={() => setAt(index)} onClick={() => choose(entry)}>
+            <span>{entry.name}</span> <span class="quiet">{entry.about}</span><span class="kind">{entry.kind}</span>
+          </li>
+        ))}
+      </ul>
+      {shown.length ? null : <p class="quiet" role="status">Nothing has these words.</p>}
+    </dialog>
+  );
+}
+
+function useEntries(): Entry[] {
+  const [entries, setEntries] = useState<Entry[]>(commands);
+  useEffect(() => {
+    let open = true;
+    const add = async (ask: () => Promise<Entry[]>) => {
+      const more = await ask().catch(() => []);
+      if (open) setEntries((before) => [...before, ...more]);
+    };
+    void add(async () => (await get<Bench[]>("/benches")).map((bench) => ({ kind: "bench", name: bench.name, about: bench.title, path: to.bench(bench.name) })));
+    void add(async () => (await get<Plan[]>("/plans")).map((plan) => ({ kind: "plan", name: plan.name, about: plan.title, path: to.plan(plan.name) })));
+    void add(async () => (await get<{ name: string }[]>("/models")).map(({ name }) => ({ kind: "model", name, about: "", path: to.model(name) })));
+    void add(async () => (await get<{ name: string }[]>("/controllers")).map(({ name }) => ({ kind: "controller", name, about: "", path: to.controller(name) })));
+    return () => { open = false; };
+  }, []);
+  return entries;
+}
+
+// A number is a run's; without one the newest are offered.
+function useRuns(text: string): Entry[] {
+  const [runs, setRuns] = useState<Entry[]>([]);
+  const number = /[0-9]+/.exec(text)?.[0] ?? "";
+  useEffect(() => {
+    const control = new AbortController();
+    const asked = number ? get<Run>(`/runs/${number}`, control.signal).then((run) => [run]) : get<Run[]>("/runs?most=5", control.signal);
+    asked.then((all) => setRuns(all.map(entryOf))).catch(() => { if (!control.signal.aborted) setRuns([]); });
+    return () => control.abort();
+  }, [number]);
+  return runs;
+}
+
+const entryOf = (run: Run): Entry => ({ kind: "run", name: `Run ${run.id}`, about: `${run.title || run.plan}, ${run.bench}, ${run.verdict ?? run.state}`, path: to.run(run.id) });

@@ -1,0 +1,35 @@
+// Light or dark as the system has it, unless somebody chose otherwise in this browser.
+
+import { Store } from "./store.ts";
+
+export type Theme = "system" | "light" | "dark";
+export const THEMES: Theme[] = ["system", "light", "dark"];
+const KEY = "theme";
+
+// Counts up whenever colours have changed: what is drawn on a canvas is drawn again.
+export const coloured = new Store(0);
+export const theme = new Store<Theme>(kept());
+
+function kept(): Theme {
+  const found = localStorage.getItem(KEY);
+  return THEMES.find((one) => one === found) ?? "system";
+}
+
+export function chooseTheme(chosen: Theme): void {
+  localStorage.setItem(KEY, chosen);
+  theme.value = chosen;
+  show();
+}
+
+function show(): void {
+  if (theme.value === "system") delete document.documentElement.dataset["theme"];
+  else document.documentElement.dataset["theme"] = theme.value;
+  coloured.value += 1;
+}
+
+export function beginTheme(): void {
+  show();
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { coloured.value += 1; });
+}
+
+export const colour = (name: string): string => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();

@@ -1,0 +1,59 @@
+// Small parts that every view is made of.
+
+import type { ComponentChildren, JSX } from "preact";
+import { moment } from "../format.ts";
+import type { Asked } from "../data.ts";
+import type { Run } from "../api/types.ts";
+
+export const inWords = (name: string): string => name.replaceAll("_", " ");
+
+export function Badge({ kind }: { kind: string }): JSX.Element {
+  return <span class={`verdict ${kind}`}>{inWords(kind)}</span>;
+}
+
+export const verdictOf = (run: Run): string =>
+  run.state === "ended" ? (run.verdict ?? "error") : run.state === "interrupted" ? "interrupted" : run.state;
+
+// A moment in the browser's language; as ISO 8601 where the pointer stays on it.
+export function Moment({ at }: { at: string | null | undefined }): JSX.Element {
+  return at ? <time dateTime={at} title={at}>{moment(at)}</time> : <span>–</span>;
+}
+
+export function Heading({ kind, children }: { kind?: ComponentChildren; children: ComponentChildren }): JSX.Element {
+  return (
+    <div class="heading">
+      {kind ? <p class="kind">{kind}</p> : null}
+      <h1>{children}</h1>
+    </div>
+  );
+}
+
+export function Section({ title, aside, children, label }: { title: ComponentChildren; aside?: ComponentChildren; children: ComponentChildren; label: string }): JSX.Element {
+  const id = `section-${label}`;
+  return (
+    <section class="part" aria-labelledby={id}>
+      <div class="part-head"><h2 id={id}>{title}</h2>{aside}</div>
+      {children}
+    </section>
+  );
+}
+
+// A table that scrolls by itself where it is wider than the page.
+export function Scroll({ label, children }: { label: string; children: ComponentChildren }): JSX.Element {
+  return <div class="scroll" tabIndex={0} role="region" aria-label={`${label}, table`}>{children}</div>;
+}
+
+// What was asked for, or why it is not there.
+export function Loaded<T>({ of, children, what }: { of: Asked<T>; what: string; children: (data: T) => ComponentChildren }): JSX.Element {
+  if (of.data !== null) return <>{children(of.data)}</>;
+  if (of.error) return <p class="bad" role="alert">{of.error.message}</p>;
+  return <p class="quiet">{`Loading ${what} …`}</p>;
+}
+
+export function Facts({ children }: { children: [ComponentChildren, ComponentChildren][] }): JSX.Element {
+  return (
+    <dl class="facts">
+      {children.map(([name, value], at) => <div key={at}><dt>{name}</dt><dd>{value}</dd></div>)}
+    </dl>
+  );
+}

@@ -1,0 +1,74 @@
+// What a bench does at one look, and what may be done about it now.
+
+import type { JSX } from "preact";
+import { useState } from "preact/hooks";
+import { ask, post } from "../api/client.ts";
+import { to } from "../addresses.ts";
+import { attempt } from "../data.ts";
+import { useLost, type BenchState } from "../live.ts";
+import { useMay, useMe } from "../session.ts";
+import { headlineOf } from "./bench-words.ts";
+
+export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 }): JSX.Element {
+  const { bench, running, message } = state;
+  const Title = level === 1 ? "h1" : "h2";
+  const about = [bench.title || bench.name, bench.simulated ? "simulated" : "", bench.machine ? `at ${bench.machine}` : "", bench.lease ? `reserved by ${bench.lease}` : ""];
+  return (
+    <section class={`banner ${bench.state}`} aria-label={`State of ${bench.name}`}>
+      <p class="kind">{about.filter(Boolean).join(", ")}</p>
+      <Title class="headline" aria-live="polite">{headlineOf(bench, running ? running.title || running.plan : null)}</Title>
+      {running ? <p><a href={to.run(running.id)}>{`Run ${running.id}`}</a>{`, by ${running.requested_by}: ${running.doing}`}</p> : null}
+      {bench.why && !running ? <p>{bench.why}</p> : null}
+      {running ? <progress max={1} value={running.share ?? 0} aria-label="Progress of the run" /> : null}
+      {message ? <p class="message" role="status">{message}</p> : null}
+      <Actions state={state} />
+    </section>
+  );
+}
+
+export function Actions({ state }: { state: BenchState }): JSX.Element | null {
+  const { bench, running, message } = state;
+  const may = useMay(), me = useMe();
+  const name = encodeURIComponent(bench.name);
+  const reached = !bench.away_since;
+  const held = running?.doing?.startsWith("held") ?? false;
+  const order = (what: string) => () => void attempt(() => post(`/runs/${running?.id}/${what}`));
+  const release = () => {
+    if (confirm(`Is ${bench.name} no longer driven by its agent? It can then be driven by another agent. A run of this agent is marked as interrupted.`)) void attempt(() => ask("DELETE", `/benches/${name}/agent`));
+  };
+  const mayReset = bench.state === "emergency_stop" && !running && may("engineer");
+  const mayRelease = bench.lease === me.name || may("engineer");
+  return (
+    <>
+      {running && message && may("operator") && reached ? <AnswerForm run={running.id} /> : null}
+      <div class="row">
+        {running && may("operator") && reached && !held ? <button type="button" onClick={order("pause")}>Pause</button> : null}
+        {running && may("operator") && reached && held ? <button type="button" class="main" onClick={order("resume")}>Resume</button> : null}
+        {running && may("operator") ? <button type="button" onClick={order("abort")}>End the run</button> : null}
+        {mayReset ? <button type="button" class="main" onClick={() => void attempt(() => post(`/benches/${name}/reset`))}>It is safe: reset the emergency stop</button> : null}
+        {bench.away_since && may("engineer") ? <button type="button" onClick={release}>Release from its agent</button> : null}
+        {!bench.lease && may("operator") ? <button type="button" onClick={() => void attempt(() => ask("PUT", `/benches/${name}/lease`, { for_s: 3600 }))}>Reserve for an hour</button> : null}
+        {bench.lease && may("operator") && mayRelease ? <button type="button" onClick={() => void attempt(() => ask("DELETE", `/benches/${name}/lease`))}>End the reservation</button> : null}
+      </div>
+    </>
+  );
+}
+
+function AnswerForm({ run }: { run: number }): JSX.Element {
+  const [text, setText] = useState("");
+  const send = (event: Event) => {
+    event.preventDefault();
+    void attempt(() => post(`/runs/${run}/answer`, { text }));
+    setText("");
+  };
+  return (
+    <form class="row" onSubmit={send}>
+      <label class="field">Answer <input maxLength={500} autocomplete="off" value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
+      <button type="submit" class="main">Send</button>
+    </form>
+  );
+}
+
+export function LostNotice(): JSX.Element | null {
+  return useLost() ? <p class="alarm" role="alert">The service does not answer. The values shown are not current. If necessary, press the emergency stop at the bench.</p> : null;
+}

@@ -1,0 +1,88 @@
+// One bench: what it does, its run as it goes on, its queue, the form that starts a plan, what came last.
+
+import type { JSX } from "preact";
+import { useEffect } from "preact/hooks";
+import type { FoundRuns, Run, RunView } from "../api/types.ts";
+import { to } from "../addresses.ts";
+import { useData } from "../data.ts";
+import { useLive } from "../live.ts";
+import { Board } from "../plot/board.tsx";
+import { useMay } from "../session.ts";
+import { benchInSight } from "../shell/stop.tsx";
+import { useStore } from "../store.ts";
+import { Badge, Moment, Scroll, Section, verdictOf } from "../ui/parts.tsx";
+import { Banner, LostNotice } from "./bench-banner.tsx";
+import { Criteria } from "./criteria.tsx";
+import { Queue } from "./queue.tsx";
+import { StartPlan } from "./start-plan.tsx";
+import { Trends } from "./trends.tsx";
+
+const AGAIN_MS = 2000;
+const LATEST = 10;
+
+export function BenchView({ bench }: { bench: string }): JSX.Element {
+  const live = useLive(bench);
+  const state = useStore(live.state);
+  const may = useMay();
+  useEffect(() => { benchInSight.value = bench; }, [bench]);
+  const running = state?.running ?? null;
+  return (
+    <>
+      <LostNotice />
+      {state ? <Banner state={state} level={1} /> : <h1>{`Bench ${bench}`}</h1>}
+      <p class="links"><a href={to.panel(bench)}>Operator panel</a> <a href={`${to.list("runs")}?bench=${encodeURIComponent(bench)}`}>All runs of this bench</a></p>
+      {running ? <Running key={running.id} run={running} /> : null}
+      <div class="columns">
+        <div>
+          {running ? <LiveCriteria run={running.id} live={live} /> : null}
+          <Latest bench={bench} over={`${state?.bench.running ?? ""}`} />
+        </div>
+        <div>
+          <Section title="Queue" label="queue">{state ? <Queue runs={state.queue} /> : null}</Section>
+          {may("operator") ? <Section title="Start a plan" label="start"><StartPlan bench={bench} /></Section> : null}
+        </div>
+      </div>
+    </>
+  );
+}
+
+function Running({ run }: { run: Run }): JSX.Element | null {
+  const view = useData<RunView>(`/runs/${run.id}/view`, AGAIN_MS);
+  if (!view.data?.live) return <p class="quiet">Nothing has been measured yet.</p>;
+  return <Section title={<>Live <a href={to.run(run.id)}>{`run ${run.id}`}</a></>} label="plots"><Board view={view.data} plan={run.plan} bench={run.bench} /></Section>;
+}
+
+function LiveCriteria({ run, live }: { run: number; live: ReturnType<typeof useLive> }): JSX.Element {
+  const found = useStore(live.criteria);
+  return <Section title="Criteria decided so far" label="criteria"><Criteria of={found?.run === run ? found.criteria : []} /></Section>;
+}
+
+function Latest({ bench, over }: { bench: string; over: string }): JSX.Element {
+  const query = new URLSearchParams([["bench", bench], ["most", String(LATEST)], ...["ended", "interrupted", "cancelled"].map((state) => ["state", state])] as string[][]);
+  const found = useData<FoundRuns>(`/run-list?${query}`, AGAIN_MS);
+  const runs = found.data?.runs.map(({ run }) => run) ?? [];
+  useEffect(() => { if (over) found.again(); }, [over]);
+  const ended = runs.find((run) => run.state === "ended");
+  return (
+    <>
+      <Section title="Latest runs" label="latest">
+        {runs.length ? (
+          <Scroll label="Latest runs">
+            <table>
+              <thead><tr><th scope="col" class="number">run</th><th scope="col">plan</th><th scope="col">verdict</th><th scope="col">ended</th><th scope="col">by</th></tr></thead>
+              <tbody>
+                {runs.map((run) => (
+                  <tr key={run.id}>
+                    <td class="number"><a href={to.run(run.id)}>{run.id}</a></td><th scope="row">{run.title || run.plan}{run.reason ? <span class="reason">{run.reason.split("\n")[0]}</span> : null}</th>
+                    <td><Badge kind={verdictOf(run)} /></td><td><Moment at={run.ended_at} /></td><td>{run.requested_by}</td>
+                  </tr>
+                ))}
+              </tbody>
+            </table>
+          </Scroll>
+        ) : <p class="quiet">No run has ended yet.</p>}
+      </Section>
+      {ended ? <Trends bench={bench} plan={ended.plan} key={`${ended.plan} ${ended.id}`} /> : null}
+    </>
+  );
+}

@@ -1,0 +1,84 @@
+// A channel of several runs, laid over each other on the time from each run's step.
+
+import type { JSX } from "preact";
+import { useEffect, useRef, useState } from "preact/hooks";
+import uPlot from "uplot";
+import { get } from "../api/client.ts";
+import type { RunTraces, RunView } from "../api/types.ts";
+import { figure, wordsOf } from "../format.ts";
+import { axis, HEIGHT, onWidth, roleOf, roomy } from "../plot/frame.ts";
+import { tracesOf } from "../plot/traces.ts";
+import { colour, coloured } from "../theme.ts";
+
+export interface Stretch {
+  run: number;
+  step: number; // on the recording's clock
+  from: number; // from the step
+  to: number;
+}
+
+interface Laid {
+  run: number;
+  time: number[];
+  lowest: (number | null)[];
+  highest: (number | null)[];
+}
+
+// Where a segment lies in a recording; null where it has none.
+export function stretchOf(view: RunView, segment: string, near: boolean): Stretch | null {
+  const mark = view.marks.find((one) => one.kind === "segment" && one.name === segment);
+  if (!mark || mark.end_s == null) return null;
+  const step = mark.step_s ?? mark.start_s;
+  return near ? { run: view.run, step, from: -0.1, to: 2 } : { run: view.run, step, from: mark.start_s - step, to: mark.end_s - step };
+}
+
+export function ComparePlot({ channel, unit, stretches }: { channel: string; unit: string; stretches: Stretch[] }): JSX.Element {
+  const place = useRef<HTMLDivElement>(null);
+  const plot = useRef<uPlot | null>(null);
+  const [laid, setLaid] = useState<Laid[]>([]);
+  const key = JSON.stringify(stretches);
+  useEffect(() => {
+    const control = new AbortController();
+    Promise.all(stretches.map((one) => laidOf(one, channel, control.signal))).then(setLaid).catch(() => {});
+    return () => control.abort();
+  }, [key, channel]);
+  useEffect(() => {
+    const element = place.current as HTMLDivElement;
+    const made = make(element, stretches.length, unit);
+    plot.current = made;
+    const stops = [coloured.subscribe(() => made.redraw(false, true)), onWidth(element, (width) => made.setSize({ width, height: HEIGHT }))];
+    return () => { stops.forEach((stop) => stop()); made.destroy(); plot.current = null; };
+  }, [stretches.length, unit]);
+  useEffect(() => {
+    if (laid.length && laid.length === stretches.length) plot.current?.setData(uPlot.join(laid.map((one) => [one.time, one.highest, one.lowest] as uPlot.AlignedData)), true);
+  }, [laid, unit]);
+  const peaks = laid.map((one) => figure(peakOf(one))).join(", ");
+  return (
+    <figure class="plot">
+      <figcaption><b>{wordsOf(channel)}</b><span class="quiet">{peaks ? `largest ${peaks} ${unit}` : "…"}</span></figcaption>
+      <div class="canvas" ref={place} role="img" aria-label={`${wordsOf(channel)} of runs ${stretches.map((one) => one.run).join(", ")} from the step; largest ${peaks} ${unit}`} />
+    </figure>
+  );
+}
+
+const peakOf = ({ lowest, highest }: Laid): number => Math.max(...[...lowest, ...highest].map((one) => (one === null ? 0 : Math.abs(one))));
+
+async function laidOf({ run, step, from, to }: Stretch, channel: string, signal: AbortSignal): Promise<Laid> {
+  const query = new URLSearchParams({ channel, start_s: (step + from).toFixed(4), end_s: (step + to).toFixed(4), most: "1000" });
+  const { time, channels } = tracesOf(await get<RunTraces>(`/runs/${run}/traces?${query}`, signal));
+  const { lowest, highest } = channels[channel] ?? { lowest: [], highest: [] };
+  return { run, time: time.map((one) => one - step), lowest, highest };
+}
+
+// The first run is drawn wider, so that one that lies exactly over it shows at its edges.
+function make(element: HTMLElement, count: number, unit: string): uPlot {
+  const series = (at: number): uPlot.Series => ({ stroke: () => colour(`series-${roleOf(at)}`), width: at ? 1.2 : 3, points: { show: false }, spanGaps: true });
+  return new uPlot({
+    width: Math.max(200, element.clientWidth), height: HEIGHT, legend: { show: false },
+    scales: { x: { time: false }, y: { range: (_, low, high) => roomy(low, high) } },
+    axes: [axis({ space: 60, size: 28 }), axis({ size: 56, unit })],
+    series: [{}, ...Array.from({ length: count }, (_, at) => [series(at), series(at)]).flat()],
+    bands: Array.from({ length: count }, (_, at) => ({ series: [2 * at + 1, 2 * at + 2] as [number, number], fill: () => colour(`series-${roleOf(at)}`) })),
+    cursor: { sync: { key: "compare" }, drag: { x: true, y: false }, points: { show: false } },
+  }, [[], ...Array.from({ length: 2 * count }, () => [])] as unknown as uPlot.AlignedData, element);
+}

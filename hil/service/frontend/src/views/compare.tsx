@@ -1,0 +1,175 @@
+// Runs of one plan side by side: what they were given differently, traces from the step, criteria with differences.
+
+import type { JSX } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import { get } from "../api/client.ts";
+import type { Comparison, FoundRuns, Run, RunView } from "../api/types.ts";
+import { to } from "../addresses.ts";
+import { useData } from "../data.ts";
+import { figure, moment, percent } from "../format.ts";
+import { roleOf } from "../plot/frame.ts";
+import { useQuery } from "../router.ts";
+import { Badge, Heading, Scroll, Section } from "../ui/parts.tsx";
+import { ComparePlot, stretchOf } from "./compare-plot.tsx";
+
+const CHANNELS = ["shaft_torque_nm", "motor_speed_rad_s", "motor_torque_nm"];
+const MOST = 6;
+
+export function Compare(): JSX.Element {
+  const [query, setQuery] = useQuery();
+  const runs = (query.get("runs") ?? "").split(",").map(Number).filter((one) => Number.isInteger(one) && one > 0).slice(0, MOST);
+  const set = (changed: number[]) => {
+    const next = new URLSearchParams(query);
+    next.set("runs", changed.join(","));
+    setQuery(next, true);
+  };
+  return (
+    <>
+      <Heading>Compare runs</Heading>
+      <Choose runs={runs} onChange={set} />
+      {runs.length >= 2 ? <Compared key={runs.join()} runs={runs} query={query} setQuery={setQuery} /> : <p class="quiet">Choose two runs or more of one plan; in the <a href={to.list("runs")}>table of runs</a> they can be ticked.</p>}
+    </>
+  );
+}
+
+const named = (run: Run): string => `${run.id}: ${run.title || run.plan}, ${run.verdict ?? run.state}${run.ended_at ? `, ${moment(run.ended_at)}` : ""}`;
+
+function Choose({ runs, onChange }: { runs: number[]; onChange: (runs: number[]) => void }): JSX.Element {
+  const first = useData<Run>(runs[0] ? `/runs/${runs[0]}` : null).data;
+  const query = new URLSearchParams([["state", "ended"], ["state", "interrupted"], ["most", "100"], ...(first ? [["plan", first.plan]] : [])] as string[][]);
+  const offered = useData<FoundRuns>(`/run-list?${query}`).data?.runs.map(({ run }) => run).filter((run) => !runs.includes(run.id)) ?? [];
+  return (
+    <div class="row small">
+      {runs.map((run, at) => (
+        <span key={run} class="chip"><span class={`swatch ${roleOf(at)}`} /><a href={to.run(run)}>{`run ${run}`}</a>
+          <button type="button" class="plain" aria-label={`Leave out run ${run}`} onClick={() => onChange(runs.filter((one) => one !== run))}>×</button>
+        </span>
+      ))}
+      {runs.length < MOST ? (
+        <label>{runs.length ? "and " : "Run "}
+          <select value="" onChange={(event) => onChange([...runs, Number(event.currentTarget.value)])}>
+            <option value="" disabled>choose …</option>
+            {offered.map((run) => <option key={run.id} value={run.id}>{named(run)}</option>)}
+          </select>
+        </label>
+      ) : null}
+    </div>
+  );
+}
+
+interface Found {
+  pairs: Comparison[]; // of the first run with each other
+  views: RunView[];
+}
+
+function useFound(runs: number[]): { found: Found | null; error: string } {
+  const [state, setState] = useState<{ found: Found | null; error: string }>({ found: null, error: "" });
+  useEffect(() => {
+    const control = new AbortController();
+    const look = async () => {
+      try {
+        const [first, ...others] = runs;
+        const views = await Promise.all(runs.map((run) => get<RunView>(`/runs/${run}/view`, control.signal)));
+        const pairs = await Promise.all(others.map((other) => get<Comparison>(`/comparisons?first=${first}&other=${other}`, control.signal)));
+        setState({ found: { pairs, views }, error: "" });
+      } catch (error) {
+        if (!control.signal.aborted) setState({ found: null, error: (error as Error).message });
+      }
+    };
+    void look();
+    return () => control.abort();
+  }, []);
+  return state;
+}
+
+function Compared({ runs, query, setQuery }: { runs: number[]; query: URLSearchParams; setQuery: (query: URLSearchParams) => void }): JSX.Element {
+  const { found, error } = useFound(runs);
+  if (error) return <p class="bad" role="alert">{error}</p>;
+  if (!found) return <p class="quiet">Comparing …</p>;
+  const segments = found.pairs[0]?.segments ?? [];
+  const segment = segments.find((one) => one.id === query.get("segment")) ?? segments[0];
+  const near = query.get("stretch") !== "whole";
+  const put = (name: string, value: string) => {
+    const next = new URLSearchParams(query);
+    next.set(name, value);
+    setQuery(next);
+  };
+  const channels = (query.get("channels")?.split(",") ?? CHANNELS).filter((one) => segment?.channels.includes(one));
+  const stretches = segment ? found.views.map((view) => stretchOf(view, segment.id, near)).filter((one) => one !== null) : [];
+  return (
+    <>
+      {found.pairs.map((pair) => <Lead key={pair.other.id} pair={pair} />)}
+      <Differences pairs={found.pairs} />
+      {segment ? (
+        <Section title="Traces from the step" label="traces">
+          <div class="row small">
+            <label>Segment <select value={segment.id} onChange={(event) => put("segment", event.currentTarget.value)}>{segments.map((one) => <option key={one.id}>{one.id}</option>)}</select></label>
+            <label>Stretch <select value={near ? "near" : "whole"} onChange={(event) => put("stretch", event.currentTarget.value)}><option value="near">first 2 s</option><option value="whole">whole segment</option></select></label>
+            <label>Channel <select value="" onChange={(event) => put("channels", [...channels, event.currentTarget.value].join(","))}><option value="" disabled>add …</option>{segment.channels.filter((one) => !channels.includes(one)).map((one) => <option key={one}>{one}</option>)}</select></label>
+            {channels.length ? <button type="button" class="plain" onClick={() => put("channels", channels.slice(0, -1).join(","))}>Leave out the last</button> : null}
+          </div>
+          <div class="plots part">{channels.map((channel) => <ComparePlot key={channel} channel={channel} unit={found.views[0]?.channels[channel] ?? ""} stretches={stretches} />)}</div>
+        </Section>
+      ) : null}
+      <ComparedCriteria pairs={found.pairs} />
+    </>
+  );
+}
+
+function Lead({ pair }: { pair: Comparison }): JSX.Element {
+  const { first, other, distance, notes } = pair;
+  return (
+    <>
+      <p>{distance === null ? `No criterion has a value in both runs ${first.id} and ${other.id}.` : `Mean difference of the criteria of run ${other.id} from run ${first.id}: ${percent(distance, 1)}.`}</p>
+      {notes.map((note) => <p class="quiet" key={note}>{note}</p>)}
+    </>
+  );
+}
+
+function Differences({ pairs }: { pairs: Comparison[] }): JSX.Element {
+  const first = pairs[0]?.first.id ?? 0;
+  const rows = new Map<string, { kind: string; name: string; first: string; others: Map<number, string> }>();
+  for (const pair of pairs) {
+    for (const one of pair.differences) {
+      const key = `${one.kind} ${one.name}`, row = rows.get(key) ?? { kind: one.kind, name: one.name, first: one.first, others: new Map<number, string>() };
+      row.others.set(pair.other.id, one.other);
+      rows.set(key, row);
+    }
+  }
+  return (
+    <Section title="Different inputs" label="inputs">
+      {rows.size === 0 ? <p class="quiet">Controllers, model, bench and plan values are identical.</p> : (
+        <Scroll label="Different inputs">
+          <table>
+            <thead><tr><th scope="col">of</th><th scope="col">value</th><th scope="col" class="number">{`run ${first}`}</th>{pairs.map((pair) => <th key={pair.other.id} scope="col" class="number">{`run ${pair.other.id}`}</th>)}</tr></thead>
+            <tbody>{[...rows].map(([key, row]) => <tr key={key}><th scope="row">{row.kind}</th><td>{row.name}</td><td class="number">{row.first}</td>{pairs.map((pair) => <td key={pair.other.id} class="number">{row.others.get(pair.other.id) ?? "the same"}</td>)}</tr>)}</tbody>
+          </table>
+        </Scroll>
+      )}
+    </Section>
+  );
+}
+
+function ComparedCriteria({ pairs }: { pairs: Comparison[] }): JSX.Element {
+  const rows = pairs[0]?.criteria ?? [], first = pairs[0]?.first.id ?? 0;
+  return (
+    <Section title="Criteria" label="criteria">
+      <Scroll label="Criteria of the runs">
+        <table>
+          <thead><tr><th scope="col">criterion</th><th scope="col" class="number">limit</th><th scope="col" class="number">{`run ${first}`}</th>{pairs.map((pair) => <th key={pair.other.id} scope="col" class="number">{`run ${pair.other.id}`}</th>)}</tr></thead>
+          <tbody>
+            {rows.map((row) => (
+              <tr key={row.id}><th scope="row">{row.title || row.id}{row.title ? <span class="reason">{row.id}</span> : null}</th><td class="number">{row.limit || "–"}</td>
+                <td class="number">{figure(row.values[0], row.unit)} <Badge kind={row.verdicts[0]} /></td>
+                {pairs.map((pair) => {
+                  const one = pair.criteria.find((other) => other.id === row.id);
+                  return <td key={pair.other.id} class="number">{figure(one?.values[1], row.unit)} {one ? <Badge kind={one.verdicts[1]} /> : null}<span class="reason">{one?.relative == null ? "" : `${one.relative > 0 ? "+" : ""}${percent(one.relative, 1)}`}</span></td>;
+                })}
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </Scroll>
+    </Section>
+  );
+}

@@ -1,0 +1,77 @@
+// Models and controllers: shipped ones and those that were given, with their files.
+
+import type { JSX } from "preact";
+import { ask } from "../api/client.ts";
+import type { Controller, Model } from "../api/types.ts";
+import { to } from "../addresses.ts";
+import { attempt, useData } from "../data.ts";
+import { go } from "../router.ts";
+import { useMay } from "../session.ts";
+import { Heading, inWords, Loaded, Scroll, Section } from "../ui/parts.tsx";
+import { FormerPage } from "./former-page.tsx";
+import { GiveFile } from "./give-file.tsx";
+import { FileText } from "./plans.tsx";
+
+export function Models(): JSX.Element {
+  const models = useData<Model[]>("/models"), may = useMay();
+  return (
+    <>
+      <Heading>Models</Heading>
+      <Loaded of={models} what="models">
+        {(all) => (
+          <Scroll label="Models"><table>
+            <thead><tr><th scope="col">model</th><th scope="col">kind</th><th scope="col">effects</th><th scope="col">from</th></tr></thead>
+            <tbody>{all.map((one) => <tr key={one.name}><th scope="row"><a href={to.model(one.name)}>{one.name}</a>{one.warning ? <span class="reason">{one.warning}</span> : null}</th><td>{inWords(one.kind)}</td><td>{one.effects.map(inWords).join(", ") || "–"}</td><td>{one.built_in ? "shipped" : "given"}</td></tr>)}</tbody>
+          </table></Scroll>
+        )}
+      </Loaded>
+      <FormerPage what="Identify a model from runs" role="engineer" />
+      {may("engineer") ? <Section title="Give a model" label="give"><GiveFile kind="model" path="/models" ending=".toml" onGiven={(name) => go(to.model(name))} /></Section> : null}
+    </>
+  );
+}
+
+export function Controllers(): JSX.Element {
+  const controllers = useData<Controller[]>("/controllers"), may = useMay();
+  return (
+    <>
+      <Heading>Controllers</Heading>
+      <Loaded of={controllers} what="controllers">
+        {(all) => (
+          <Scroll label="Controllers"><table>
+            <thead><tr><th scope="col">controller</th><th scope="col">stabilisation</th><th scope="col">from</th></tr></thead>
+            <tbody>{all.map((one) => <tr key={one.name}><th scope="row"><a href={to.controller(one.name)}>{one.name}</a>{one.warnings.map((text) => <span class="reason" key={text}>{text}</span>)}</th><td>{inWords(one.stabilisation)}</td><td>{one.built_in ? "built in" : "given"}</td></tr>)}</tbody>
+          </table></Scroll>
+        )}
+      </Loaded>
+      <FormerPage what="Design a controller" role="engineer" />
+      {may("engineer") ? <Section title="Give a controller" label="give"><GiveFile kind="controller" path="/controllers" ending=".toml" onGiven={(name) => go(to.controller(name))} /></Section> : null}
+    </>
+  );
+}
+
+export const ModelView = ({ name }: { name: string }): JSX.Element => <Given name={name} kind="model" path="/models" list="models" />;
+export const ControllerView = ({ name }: { name: string }): JSX.Element => <Given name={name} kind="controller" path="/controllers" list="controllers" />;
+
+interface GivenOptions {
+  name: string;
+  kind: string;
+  path: string;
+  list: "models" | "controllers";
+}
+
+function Given({ name, kind, path, list }: GivenOptions): JSX.Element {
+  const may = useMay();
+  const found = useData<{ name: string; built_in: boolean }[]>(path).data?.find((one) => one.name === name);
+  const remove = async () => {
+    if (!confirm(`Remove the ${kind} ${name}?`)) return;
+    if (await attempt(async () => { await ask("DELETE", `${path}/${encodeURIComponent(name)}`); return true; })) go(to.list(list));
+  };
+  return (
+    <>
+      <Heading kind={found ? (found.built_in ? `Shipped ${kind}` : `Given ${kind}`) : kind}>{name}</Heading>
+      <FileText path={`${path}/${encodeURIComponent(name)}/text`} label={`${kind} ${name}`} />
+      {found && !found.built_in && may("engineer") ? <div class="row"><button type="button" onClick={() => void remove()}>{`Remove the ${kind}`}</button></div> : null}
+    </>
+  );
+}

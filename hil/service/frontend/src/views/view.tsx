@@ -1,0 +1,50 @@
+// Which view an address shows.
+
+import type { JSX } from "preact";
+import { to, type Place } from "../addresses.ts";
+import { Heading } from "../ui/parts.tsx";
+import { Audit } from "./audit.tsx";
+import { BenchView } from "./bench.tsx";
+import { Benches } from "./benches.tsx";
+import { Campaigns, CampaignView } from "./campaigns.tsx";
+import { Compare } from "./compare.tsx";
+import { Controllers, ControllerView, Models, ModelView } from "./given.tsx";
+import { Panel } from "./panel.tsx";
+import { Plans, PlanView } from "./plans.tsx";
+import { RunView } from "./run.tsx";
+import { Runs } from "./runs.tsx";
+import { Settings } from "./settings.tsx";
+import { Studies, StudyView } from "./studies.tsx";
+
+export function View({ place }: { place: Place }): JSX.Element {
+  switch (place.view) {
+    case "benches": return <Benches />;
+    case "bench": return <BenchView key={place.bench} bench={place.bench} />;
+    case "panel": return <Panel key={place.bench} bench={place.bench} />;
+    case "runs": return <Runs />;
+    case "run": return <RunView key={place.run} run={place.run} />;
+    case "compare": return <Compare />;
+    case "plans": return <Plans />;
+    case "plan": return <PlanView key={place.name} name={place.name} />;
+    case "models": return <Models />;
+    case "model": return <ModelView key={place.name} name={place.name} />;
+    case "controllers": return <Controllers />;
+    case "controller": return <ControllerView key={place.name} name={place.name} />;
+    case "diagnoses": return <Studies />;
+    case "diagnosis": return <StudyView key={place.id} id={place.id} />;
+    case "campaigns": return <Campaigns />;
+    case "campaign": return <CampaignView key={place.id} id={place.id} />;
+    case "audit": return <Audit />;
+    case "settings": return <Settings />;
+    case "missing": return <Missing path={place.path} />;
+  }
+}
+
+function Missing({ path }: { path: string }): JSX.Element {
+  return (
+    <>
+      <Heading>No such page</Heading>
+      <p>{`There is nothing at ${path}. `}<a href={to.list("benches")}>All benches</a></p>
+    </>
+  );
+}

@@ -1,0 +1,29 @@
+// Every view has an address that says it, and an address that says nothing is told apart.
+
+import assert from "node:assert/strict";
+import test from "node:test";
+import { placeOf, titleOf, to } from "../../../../hil/service/frontend/src/addresses.ts";
+
+test("what an address was written from is read from it", () => {
+  assert.deepEqual(placeOf(to.bench("rear axle/2")), { view: "bench", bench: "rear axle/2" });
+  assert.deepEqual(placeOf(to.panel("sim")), { view: "panel", bench: "sim" });
+  assert.deepEqual(placeOf(to.run(17)), { view: "run", run: 17 });
+  assert.deepEqual(placeOf(to.plan("driveability")), { view: "plan", name: "driveability" });
+  assert.deepEqual(placeOf(to.diagnosis(3)), { view: "diagnosis", id: 3 });
+  assert.deepEqual(placeOf(to.campaign(4)), { view: "campaign", id: 4 });
+  for (const view of ["benches", "runs", "compare", "plans", "models", "controllers", "diagnoses", "campaigns", "audit", "settings"] as const) assert.deepEqual(placeOf(to.list(view)), { view });
+});
+
+test("the address without a view is that of the benches", () => {
+  assert.deepEqual(placeOf("/app"), { view: "benches" });
+  assert.deepEqual(placeOf("/app/"), { view: "benches" });
+});
+
+test("an address of nothing is missing, whatever stands in it", () => {
+  for (const path of ["/app/nothing", "/app/runs/0", "/app/runs/x", "/app/runs/1/2", "/app/benches/sim/other", "/app/settings/a", "/app/plans/%E0%A4%A"]) assert.equal(placeOf(path).view, "missing", path);
+});
+
+test("titles tell views apart", () => {
+  assert.equal(titleOf(placeOf("/app/runs/17")), "Run 17");
+  assert.equal(titleOf(placeOf("/app/benches/sim/panel")), "Operator panel of sim");
+});

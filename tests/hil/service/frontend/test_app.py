@@ -1,0 +1,223 @@
+"""The built page in a browser, against the real service on the simulated bench."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright import sync_api as playwright
+
+from hil.service.serving import make_token
+from tests.hil.service.looks import refuse_hard_to_use
+from tests.hil.service.served import ASKING, SHORT, Served, environment_of, served
+
+ROOT = Path(__file__).parents[4]
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(shutil.which("chromium") is None, reason="there is no chromium"),
+    pytest.mark.skipif(
+        not (ROOT / "hil/service/frontend/built/index.html").is_file(),
+        reason="the page is not built: make page",
+    ),
+]
+#: Time enough before its question for all that was measured to be written.
+_LATER = ASKING.replace("name: asking", "name: asking\ntitle: A plan that asks").replace(
+    "  - operator_prompt", "  - wait: {duration_s: 5}\n  - operator_prompt"
+)
+expect = playwright.expect
+expect.set_options(timeout=60_000)
+
+
+@pytest.fixture(scope="module")
+def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """A service with two runs that ended: of 100 and of 150 N m."""
+    folder = tmp_path_factory.mktemp("app")
+    with served(folder / "data", "--rate", "1000", state=folder / "state") as service:
+        service.give("asking", _LATER)
+        service.give("short", SHORT.replace("name: short", "name: short\ntitle: A short plan"))
+        for torque_nm in (100, 150):
+            service.over(service.queue(values={"torque_nm": torque_nm}))
+        yield service
+
+
+def to(page: playwright.Page, there: Served, address: str) -> None:
+    page.goto(f"{there.url}/app/{address}")
+
+
+def heading(page: playwright.Page, name: str | re.Pattern[str]) -> playwright.Locator:
+    return page.get_by_role("heading", level=1, name=name)
+
+
+def test_a_plan_is_foreseen_queued_watched_stopped_and_found(page: playwright.Page, there: Served) -> None:
+    to(page, there, "benches/sim")
+    page.get_by_label("Plan", exact=True).select_option("asking")
+    expect(page.locator(".forecast")).to_contain_text("Fits the bench", timeout=180_000)
+    page.get_by_role("button", name="Queue the run").click()
+    expect(heading(page, re.compile("A plan that asks"))).to_be_visible()
+    run = int(page.url.rpartition("/")[2])
+    expect(page.get_by_text("Is the cage shut?")).to_be_visible()
+    expect(page.locator(".chip", has_text="motor speed").first).to_contain_text("rad/s")
+    expect(page.get_by_role("region", name="Criteria", exact=True)).to_contain_text("s.peak_shaft_torque")
+    page.get_by_role("button", name="Emergency stop sim").click()
+    there.over(run)
+    expect(page.get_by_text("error", exact=True)).to_be_visible()
+    expect(page.get_by_role("region", name="Segments and events", exact=True)).to_contain_text("safe_state")
+    with page.expect_popup() as report:
+        page.get_by_role("link", name="report", exact=True).click()
+    expect(heading(report.value, re.compile("A plan that asks"))).to_be_visible()
+    report.value.close()
+    to(page, there, "benches/sim")
+    page.get_by_role("button", name="It is safe: reset the emergency stop").click()
+    expect(heading(page, "Free")).to_be_visible()
+
+
+def test_a_question_is_answered_on_the_operator_panel(page: playwright.Page, there: Served) -> None:
+    run = there.queue("asking")
+    to(page, there, "benches/sim/panel")
+    expect(page.get_by_text("Is the cage shut?")).to_be_visible()
+    expect(page.locator(".dials")).to_contain_text("limit ±700")
+    page.get_by_label("Answer").fill("yes")
+    page.keyboard.press("Enter")
+    assert there.over(run)["verdict"] == "pass"
+    expect(heading(page, "Free")).to_be_visible()
+
+
+@pytest.mark.parametrize(
+    ("address", "name"),
+    [
+        ("benches", "Benches"),
+        ("benches/sim", "Free"),
+        ("benches/sim/panel", "Free"),
+        ("runs?plan=short", "Runs"),
+        ("runs/1", re.compile("A short plan")),
+        ("compare?runs=1,2", "Compare runs"),
+        ("plans", "Plans"),
+        ("plans/acceptance", re.compile("Vibration suppression")),
+        ("models", "Models"),
+        ("controllers", "Controllers"),
+        ("controllers/phase_stabilization", "phase_stabilization"),
+        ("diagnoses", "Diagnoses"),
+        ("campaigns", "Campaigns"),
+        ("audit", "Audit log"),
+        ("settings", "Settings"),
+        ("nothing", "No such page"),
+    ],
+)
+def test_each_address_shows_its_view_again_after_a_reload_and_is_easy_to_use(
+    page: playwright.Page, there: Served, address: str, name: str | re.Pattern[str]
+) -> None:
+    to(page, there, address)
+    expect(heading(page, name)).to_be_visible()
+    title = page.title()
+    page.reload()
+    expect(heading(page, name)).to_be_visible()
+    assert (page.title(), page.url) == (title, f"{there.url}/app/{address}")
+    expect(page.locator("main").get_by_text("Loading")).to_have_count(0)
+    refuse_hard_to_use(page)
+
+
+def test_the_browser_goes_back_and_forward_between_views(page: playwright.Page, there: Served) -> None:
+    to(page, there, "benches")
+    page.get_by_role("link", name="Runs").click()
+    page.get_by_role("link", name="1", exact=True).click()
+    expect(heading(page, re.compile("A short plan"))).to_be_visible()
+    page.go_back()
+    expect(heading(page, "Runs")).to_be_visible()
+    page.go_back()
+    expect(heading(page, "Benches")).to_be_visible()
+    page.go_forward()
+    page.go_forward()
+    expect(page).to_have_title(re.compile("^Run 1 "))
+
+
+def test_the_palette_finds_by_keyboard_alone(page: playwright.Page, there: Served) -> None:
+    to(page, there, "benches")
+    expect(heading(page, "Benches")).to_be_visible()
+    for words, url in (
+        ("acceptance", "/app/plans/acceptance"),
+        ("run 2", "/app/runs/2"),
+        ("sim", "/app/benches/sim"),
+    ):
+        page.keyboard.press("Control+k")
+        page.keyboard.type(words)
+        expect(page.get_by_role("dialog").get_by_role("option").first).to_contain_text(
+            words, ignore_case=True
+        )
+        page.keyboard.press("Enter")
+        expect(page).to_have_url(there.url + url)
+    page.keyboard.press("Control+k")
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("dialog")).to_have_count(0)
+
+
+def test_runs_are_filtered_sorted_and_compared(page: playwright.Page, there: Served) -> None:
+    to(page, there, "runs?plan=short")
+    rows = page.locator("tbody tr")
+    expect(rows.first).to_contain_text("torque_nm = 150")
+    page.get_by_label("Criterion").select_option("s.peak_shaft_torque")
+    page.get_by_role("button", name="s.peak_shaft_torque").click()
+    page.get_by_role("button", name="s.peak_shaft_torque").click()
+    expect(rows.first).to_contain_text("torque_nm = 100")
+    assert "sort=value&rising=true" in page.url
+    page.get_by_label("at least").fill("120")
+    expect(rows).to_have_count(1)
+    page.get_by_role("button", name="Clear all").click()
+    for run in (1, 2):
+        page.get_by_label(f"Compare run {run}", exact=True).check()
+    page.get_by_role("button", name="Compare", exact=True).click()
+    expect(page.get_by_role("region", name="Different inputs", exact=True).locator("table")).to_contain_text(
+        "150"
+    )
+    expect(page.get_by_role("img", name=re.compile("shaft torque of runs 1, 2"))).to_be_visible()
+
+
+def test_what_is_seen_of_a_run_stands_in_its_address(page: playwright.Page, there: Served) -> None:
+    to(page, there, "runs/1")
+    plots = page.locator("figure.plot")
+    expect(plots).to_have_count(4)
+    page.locator(".channels li", has_text="wheel speed left").drag_to(plots.first)
+    expect(plots.first).to_contain_text("wheel speed left")
+    page.get_by_label("Put vehicle speed onto a plot").select_option("1")
+    expect(plots.nth(1)).to_contain_text("vehicle speed")
+    over = plots.nth(1).locator(".u-over").bounding_box()
+    assert over is not None
+    page.mouse.move(over["x"] + 0.4 * over["width"], over["y"] + 50)
+    page.mouse.down()
+    page.mouse.move(over["x"] + 0.6 * over["width"], over["y"] + 50, steps=4)
+    page.mouse.up()
+    expect(page).to_have_url(re.compile(r"t=\d"))
+    page.get_by_role("button", name="Add a cursor").click()
+    page.locator(".plot-place").first.focus()
+    page.keyboard.press("c")
+    page.keyboard.press("ArrowRight")
+    cursors = page.get_by_role("region", name="Values at the cursors")
+    expect(cursors).to_contain_text("B − A")
+    expect(cursors.get_by_role("row", name=re.compile("shaft torque"))).to_contain_text("N m")
+    seen, sent = cursors.inner_text(), page.url
+    page.goto("about:blank")
+    page.goto(sent)
+    expect(cursors).to_have_text(re.compile("shaft torque"))
+    expect(plots.first).to_contain_text("wheel speed left")
+    page.wait_for_function("text => document.querySelector('.cursors table')?.innerText === text", arg=seen)
+
+
+def test_who_has_no_token_can_stop_and_see_nothing(tmp_path: Path, page: playwright.Page) -> None:
+    database = environment_of(tmp_path / "data")["HIL_DATABASE"]
+    made = make_token(tmp_path / "data", database, "anna", "viewer")
+    with served(tmp_path / "data", state=tmp_path / "state", token=made.secret) as service:
+        to(page, service, "benches/sim")
+        expect(heading(page, "Sign in")).to_be_visible()
+        page.get_by_role("button", name="Emergency stop all benches").click()
+        page.get_by_label("Token").fill(made.secret)
+        page.get_by_role("button", name="Sign in").click()
+        expect(heading(page, "Emergency stop")).to_be_visible()
+        expect(page.get_by_text("anna, viewer")).to_be_visible()
+        assert page.get_by_role("button", name="It is safe: reset the emergency stop").is_hidden()
+        assert page.get_by_role("heading", name="Start a plan").is_hidden()
+        refuse_hard_to_use(page)
+        page.get_by_role("button", name="Sign out").click()
+        expect(heading(page, "Sign in")).to_be_visible()
+        page.goto("about:blank")  # it would tell that the service has gone
