@@ -77,18 +77,18 @@ def _of_a_server(arguments: list[str]) -> list[str]:
     """`hil --server URL run …` as `hil run --server URL …`.
 
     Raises:
-        BadInputError: another command than run or campaign, or none.
+        BadInputError: another command than run, campaign or list, or none.
     """
     option, _, url = arguments[0].partition("=")
     if option != "--server":
         return arguments
     rest = arguments[1:] if url else arguments[2:]
     url = url or (arguments[1] if len(arguments) > 1 else "")
-    if not url or rest[:1] not in (["run"], ["campaign"]):
+    if not url or rest[:1] not in (["run"], ["campaign"], ["list"]):
         raise BadInputError(
-            "a service accepts the commands 'run' and 'campaign' only",
+            "a service accepts the commands 'run', 'campaign' and 'list runs' only",
             where="--server",
-            fix="write: hil --server URL run PLAN --bench NAME; or campaign FILE",
+            fix="write: hil --server URL run PLAN --bench NAME; or campaign FILE; or list runs",
         )
     return [rest[0], "--server", url, *rest[1:]]
 

@@ -20,13 +20,17 @@ _STYLE = {"pass": "green", "fail": "bold red", "error": "bold magenta"}
 
 def list_runs(options: List) -> int:
     """Execute the command; its exit code."""
+    if options.server:
+        from hil.cli.remote_runs import list_remote_runs  # costs a list of a folder nothing
+
+        return list_remote_runs(options, moment(options.since, "--since"), moment(options.until, "--until"))
     folder = options.folder or _DEFAULT
     wanted = RunsWanted(
         plan=tuple(options.plan or ()),
         bench=tuple(options.bench or ()),
         verdict=tuple(options.verdict or ()),
-        since=_moment(options.since, "--since"),
-        until=_moment(options.until, "--until"),
+        since=moment(options.since, "--since"),
+        until=moment(options.until, "--until"),
         criterion=options.criterion,
         above=options.above,
         below=options.below,
@@ -44,7 +48,7 @@ def list_runs(options: List) -> int:
     return 0
 
 
-def _moment(text: str, option: str) -> datetime.datetime | None:
+def moment(text: str, option: str) -> datetime.datetime | None:
     """A date, or a date and a time of day, in this machine's time zone unless it has one."""
     if not text:
         return None

@@ -48,6 +48,7 @@ from hil.api_schemas.design import (
     ModelData,
     PlanCopyWanted,
 )
+from hil.api_schemas.run_list import FoundRuns, RunsWanted
 from hil.api_schemas.study import (
     DiagnosisData,
     DiagnosisWanted,
@@ -149,6 +150,12 @@ class Client(Requests):
         """Runs, newest first."""
         query = {"most": str(most)} | ({"bench": bench} if bench else {})
         return self._several(RunData, f"/runs?{urllib.parse.urlencode(query)}")
+
+    def find_runs(self, wanted: RunsWanted) -> FoundRuns:
+        """A page of all runs that pass the filters, sorted by the service."""
+        chosen = wanted.model_dump(mode="json", exclude_defaults=True)
+        query = urllib.parse.urlencode(chosen, doseq=True)
+        return self._one(FoundRuns, "GET", f"/run-list?{query}")
 
     def trends(self, bench: str, plan: str) -> list[TrendData]:
         """Each criterion of a plan on a bench over its newest runs."""

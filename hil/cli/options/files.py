@@ -78,6 +78,12 @@ class List:
         False
     )
     most: Annotated[int | None, typer.Option(min=1, help="with runs: number of runs shown at most")] = None
+    server: Annotated[
+        str,
+        typer.Option(
+            metavar="URL", help="with runs: those of a bench service (hil serve); HIL_TOKEN holds the token"
+        ),
+    ] = ""
     as_json: JsonObject = False
 
 
