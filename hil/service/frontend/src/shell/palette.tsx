@@ -1,7 +1,7 @@
 // The palette (Ctrl-K): finds any bench, plan, run, model, controller or command by its words.
 
 import type { JSX } from "preact";
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import { get } from "../api/client.ts";
 import type { Bench, Plan, Run } from "../api/types.ts";
 import { to } from "../addresses.ts";
@@ -18,7 +18,7 @@ addEventListener("keydown", (event) => {
   if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "k") {
     event.preventDefault();
     paletteOpen.value = !paletteOpen.value && session.value.state === "in";
-  }
+  } else if (event.key === "Escape") paletteOpen.value = false;
 });
 
 export function Palette(): JSX.Element | null {
@@ -32,7 +32,7 @@ function Open(): JSX.Element {
   const entries = useEntries();
   const runs = useRuns(text);
   const shown = useMemo(() => found([...entries, ...runs], text, MOST), [entries, runs, text]);
-  useEffect(() => { dialog.current?.showModal(); }, []);
+  useLayoutEffect(() => { dialog.current?.showModal(); }, []); // before the next key comes
   useEffect(() => { document.getElementById(`entry-${at}`)?.scrollIntoView({ block: "nearest" }); }, [at]);
   const close = () => { paletteOpen.value = false; };
   const choose = (entry: Entry | undefined) => {
@@ -66,22 +66,25 @@ function Open(): JSX.Element {
   );
 }
 
+let known: Entry[] = []; // as the palette had them last: there at once when it is opened again
+
 function useEntries(): Entry[] {
-  const [entries, setEntries] = useState<Entry[]>(commands);
+  const [entries, setEntries] = useState<Entry[]>(() => [...commands(), ...known]);
   useEffect(() => {
     let open = true;
-    const add = async (ask: () => Promise<Entry[]>) => {
-      const more = await ask().catch(() => []);
-      if (open) setEntries((before) => [...before, ...more]);
-    };
-    void add(async () => (await get<Bench[]>("/benches")).map((bench) => ({ kind: "bench", name: bench.name, about: bench.title, path: to.bench(bench.name) })));
-    void add(async () => (await get<Plan[]>("/plans")).map((plan) => ({ kind: "plan", name: plan.name, about: plan.title, path: to.plan(plan.name) })));
-    void add(async () => (await get<{ name: string }[]>("/models")).map(({ name }) => ({ kind: "model", name, about: "", path: to.model(name) })));
-    void add(async () => (await get<{ name: string }[]>("/controllers")).map(({ name }) => ({ kind: "controller", name, about: "", path: to.controller(name) })));
+    const asked = [benches(), plans(), named("/models", "model", to.model), named("/controllers", "controller", to.controller)];
+    void Promise.all(asked.map((one) => one.catch(() => []))).then((all) => {
+      known = all.flat();
+      if (open) setEntries([...commands(), ...known]);
+    });
     return () => { open = false; };
   }, []);
   return entries;
 }
+
+const benches = async (): Promise<Entry[]> => (await get<Bench[]>("/benches")).map((bench) => ({ kind: "bench", name: bench.name, about: bench.title, path: to.bench(bench.name) }));
+const plans = async (): Promise<Entry[]> => (await get<Plan[]>("/plans")).map((plan) => ({ kind: "plan", name: plan.name, about: plan.title, path: to.plan(plan.name) }));
+const named = async (path: string, kind: string, address: (name: string) => string): Promise<Entry[]> => (await get<{ name: string }[]>(path)).map(({ name }) => ({ kind, name, about: "", path: address(name) }));
 
 // A number is a run's; without one the newest are offered.
 function useRuns(text: string): Entry[] {
