@@ -32,6 +32,7 @@ from hil.core.controller.bounds import (
     denominator_checked,
     too_fast,
 )
+from hil.core.controller.shaping import Play, RequestLimits, Schedule, SlipWithdrawal
 from hil.core.errors.mistakes import Mistake, keyed, refuse
 from hil.core.errors.table_mistakes import mistakes_of
 from hil.core.files import write_atomically
@@ -136,6 +137,10 @@ class Controller(_Table):
     wsc: Wsc
     dfo: Dfo
     plant: Plant
+    request: RequestLimits | None = None
+    slip: SlipWithdrawal | None = None
+    play: Play | None = None
+    schedule: Schedule | None = None
     meta: dict[str, Any] = {}
 
     @property
