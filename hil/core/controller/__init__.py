@@ -15,6 +15,7 @@ import tomli_w
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from hil.core.controller.bounds import (
+    MOST_DEAD_TIME_SAMPLES,
     Alpha,
     Depth,
     Frequency,
@@ -194,6 +195,14 @@ def _contradictions(controller: Controller) -> list[Mistake]:
                 f"the filter {equation} would be improper"
             )
             found.append(Mistake(f"plant.{key}", what, f"give at least order {_order(above) - 1}"))
+    if controller.play is not None and controller.play.dead_time_s > (
+        longest_s := MOST_DEAD_TIME_SAMPLES * controller.sample_time_s
+    ):
+        what = (
+            f"play.dead_time_s is {controller.play.dead_time_s:g}: the RMCU waits for {longest_s:g} s at most"
+        )
+        fix = f"it remembers {MOST_DEAD_TIME_SAMPLES} samples; give a longer sample_time_s"
+        found.append(Mistake("play.dead_time_s", what, fix))
     return found
 
 
