@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.play_crossing import CROSSING, LEAD, LIBRARY, PLAN
+from hil.core.controller import load_controller
 from hil.core.model import EffectUse, Model, load_model
 from hil.core.recording import Recording
 from hil.core.result import Segment
@@ -18,8 +20,9 @@ from reports.drive_figures import drive_figure
 from reports.figure import Band, Figure, Level, Mark, Trace
 from reports.labels import Label, channel_label
 from reports.svg_figure import svg_figure
-from test_plans import load_plan
+from test_plans import load_plan, plan_from_text
 from test_plans.metrics import (
+    Clunk,
     Delay,
     Jerk,
     OvershootShaftTorque,
@@ -174,11 +177,32 @@ def settling(recording: Recording, segment: Segment) -> None:
     )
 
 
+def crossing() -> None:
+    """A reversal through play with the shipped lead, and with a torque that crosses it."""
+    plan = plan_from_text(PLAN, "reversal.yaml", LIBRARY)
+    traces, clunks = [], []
+    for role, words, controllers in (
+        ("gain", "lead", None),
+        ("phase", "crossing of the play", {LEAD: load_controller(CROSSING)}),
+    ):
+        found = predict(plan, load_bench(DEFAULT_BENCH), PLAY, controllers=controllers)
+        x, y = around(found.recording, found.segments[0], -0.05, 0.3)
+        traces.append(Trace(Label(f"Shaft torque, {words}"), x, y, role))
+        clunks.append(Clunk().compute(found.recording, found.segments[0]))
+    chart(
+        "drive-crossing",
+        f"Regeneration to drive at 30 km/h: clunk {clunks[0]:,.0f} and {clunks[1]:,.0f} N m/s",
+        tuple(traces),
+        x_range=(-0.05, 0.3),
+    )
+
+
 def main() -> None:
     """All pictures, beside this file."""
     plain, plain_segments = run("driveability", MODEL)
     loose, loose_segments = run("driveability", PLAY)
     accepted, accepted_segments = run("acceptance", MODEL)
+    crossing()
     response(plain, plain_segments["back_out_30"])
     play(loose, loose_segments["change_of_mind_30"])
     jerk(loose, loose_segments["change_of_mind_30"])
