@@ -15,7 +15,8 @@ import numpy.typing as npt
 
 import benches
 import test_plans
-from hil.core.controller import SlipWithdrawal, load_controller
+from hil.core.controller import load_controller
+from hil.core.controller.shaping import SlipWithdrawal
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model, load_model
 from hil.fmu import Axle
@@ -69,8 +70,8 @@ def ride(controller: str, slip: SlipWithdrawal | None = None) -> Ride:
     axle, time_s, asked_nm = on_the_road(model, controller, END_S, slip)
     out = axle.play(asked_nm)
     shaft = out["shaft_torque_nm"][time_s >= STEP_S + 0.5]
-    slip = out["wheel_speed_rad_s"] - out["vehicle_speed_m_s"] / model.wheel_radius_m
-    return Ride(float(shaft.min()), float(shaft.max()), float(slip.max()))
+    ahead = out["wheel_speed_rad_s"] - out["vehicle_speed_m_s"] / model.wheel_radius_m
+    return Ride(float(shaft.min()), float(shaft.max()), float(ahead.max()))
 
 
 def main() -> None:

@@ -18,7 +18,8 @@ import numpy.typing as npt
 import benches
 import test_plans
 from hil.analysis.tuning import Draw, Tolerance, draws_of
-from hil.core.controller import Controller, RequestLimits, load_controller
+from hil.core.controller import Controller, load_controller
+from hil.core.controller.shaping import RequestLimits
 from hil.core.model import EffectUse, load_model
 from hil.engine import DEFAULT_BENCH, load_bench
 from hil.engine.prediction.batch_prediction import BatchPrediction

@@ -10,8 +10,9 @@ from hil.analysis.control_design._spec import DesignSpec
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.analysis.identification import fit_chain
 from hil.core.channels import OUTPUTS
-from hil.core.controller import Controller, Dfc, Dfo, Lead, Notch, Play, Wsc
+from hil.core.controller import Controller, Dfc, Dfo, Lead, Notch, Wsc
 from hil.core.controller.bounds import SLOWEST_HZ
+from hil.core.controller.shaping import Play
 from hil.core.effects import finite_number
 from hil.core.errors import BadInputError
 from hil.core.model import Model

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from hil.analysis.tuning import PARAMETERS, Space, values_of, with_values
 from hil.analysis.tuning._parameters import TABLES
-from hil.core.controller import RequestLimits, load_controller
+from hil.core.controller import load_controller
+from hil.core.controller.shaping import RequestLimits
 from hil.core.errors import BadInputError
 from test_plans.loading import LIBRARY
 

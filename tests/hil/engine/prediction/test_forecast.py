@@ -10,7 +10,8 @@ import json
 import numpy as np
 import pytest
 
-from hil.core.controller import RequestLimits, Schedule, SlipWithdrawal, load_controller, save_controller
+from hil.core.controller import load_controller, save_controller
+from hil.core.controller.shaping import RequestLimits, Schedule, SlipWithdrawal
 from hil.core.errors import BadInputError, BenchError
 from hil.core.model import EffectUse, load_model, model_from_dict
 from hil.core.recording import read_recording, run_of, write_recording

@@ -7,7 +7,8 @@ import pytest
 
 from benchmarks.play_crossing import LEAD
 from drivers import parameters_of
-from hil.core.controller import Controller, Schedule, load_controller
+from hil.core.controller import Controller, load_controller
+from hil.core.controller.shaping import Schedule
 from hil.fmu import Axle
 from hil.plant.closed_loop import tick as T
 from hil.plant.controller import Memory, build

@@ -27,7 +27,7 @@ GEAR = SHIPPED.dfo.gear_ratio
 Array = np.ndarray
 
 
-def with_play(controller: Controller = SHIPPED, **values: float) -> Controller:
+def with_play(controller: Controller = SHIPPED, **values: float | None) -> Controller:
     assert PLAY is not None
     return controller.model_copy(update={"play": PLAY.model_copy(update=values)})
 

@@ -8,7 +8,8 @@ import pytest
 from benchmarks.low_friction import on_the_road, slippery_axle
 from benchmarks.play_crossing import LEAD
 from drivers import parameters_of
-from hil.core.controller import Controller, RequestLimits, SlipWithdrawal, load_controller
+from hil.core.controller import Controller, load_controller
+from hil.core.controller.shaping import RequestLimits, SlipWithdrawal
 from hil.fmu import Axle
 from hil.plant.controller import Memory, build
 from hil.plant.controller import memory as M
