@@ -18,6 +18,17 @@ CONTRACT = {
     "torque_rate_limit": ("limit_nm_s",),
     "torque_deadband": ("half_width_nm",),
     "torque_gain": ("gain",),
+    "motor_limits": (
+        "peak_nm",
+        "power_w",
+        "regenerated_w",
+        "state_of_charge",
+        "low_charge",
+        "high_charge",
+        "temperature_deg_c",
+        "warm_deg_c",
+        "hot_deg_c",
+    ),
     "backlash": (
         "half_gap_rad",
         "contact_damping_nms_rad",
