@@ -33,7 +33,7 @@ def enter(b, a, z, k, s, mode, v_hat, w_m, t_m):  # type: ignore[no-untyped-def]
     settle(b[M.OBSERVER_TORQUE], a[M.OBSERVER_TORQUE], z[M.OBSERVER_TORQUE], t_m)
     settle(b[M.OBSERVER_SPEED], a[M.OBSERVER_SPEED], z[M.OBSERVER_SPEED], w_m)
     s[M.REQUEST] = 0.0
-    s[M.ROAD_LIMIT] = 0.0
+    s[M.ROAD_LIMIT] = M.NO_LIMIT
     if k[M.SHAFT_STIFFNESS] > 0.0:
         lie_on(b, a, z, k, s, t_m)
 

@@ -78,6 +78,7 @@ GAINS = DFC_FACTOR + MOST_SCHEDULE_POINTS
     AHEAD,  # of the reference, the axle's twist, rad
 ) = range(8, 17)
 # What is expected of the axle, by sample: the part of ω_m that twist and tyre make (rad/s), T_s (N m)
+NO_LIMIT = 1e12  # of a request, N m
 EXPECTED_SPEED = 17
 RING = MOST_DEAD_TIME_SAMPLES + 2
 EXPECTED_TORQUE = EXPECTED_SPEED + RING

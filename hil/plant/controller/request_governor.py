@@ -69,7 +69,7 @@ def _limit_gradient(k, s, request):  # type: ignore[no-untyped-def]
 def _withdraw(k, s, request, v_hat, w_m):  # type: ignore[no-untyped-def]
     """Ask no more than the observer sees on the road while the wheels run beyond the slip of (1)(2).
 
-    Afterwards as much more as SLIP_RECOVERY allows.
+    Afterwards as much more as SLIP_RECOVERY allows, until it is all that is asked for.
     """
     way = 1.0 if request >= 0.0 else -1.0
     base = v_hat if v_hat >= k[M.SIGMA] else k[M.SIGMA]
@@ -80,5 +80,6 @@ def _withdraw(k, s, request, v_hat, w_m):  # type: ignore[no-untyped-def]
     else:
         s[M.ROAD_LIMIT] += k[M.SLIP_RECOVERY] * k[M.SAMPLE_TIME]
     if s[M.ROAD_LIMIT] > size:
-        s[M.ROAD_LIMIT] = size
+        s[M.ROAD_LIMIT] = M.NO_LIMIT
+        return request
     return way * s[M.ROAD_LIMIT]

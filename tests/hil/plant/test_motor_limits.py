@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -104,7 +105,7 @@ def test_limits_that_contradict_each_other_are_refused() -> None:
 def test_what_computes_the_torque_first_refuses_it() -> None:
     with pytest.raises(BadInputError, match="'motor_limits' needs the speed"):
         refuse_motor_limits(limited(), "a fit")
-    time = np.arange(100) * DT
-    recording = Recording({TIME: time, INPUT: time, "motor_speed_rad_s": time}, "here.csv")  # type: ignore[arg-type]
+    time = np.arange(100, dtype=np.float64) * DT
+    recording = Recording({TIME: time, INPUT: time, "motor_speed_rad_s": time}, Path("here.csv"))
     with pytest.raises(BadInputError, match="a diagnosis computes"):
         diagnose(limited(), [recording])

@@ -74,13 +74,16 @@ def test_the_request_is_withdrawn_to_what_the_road_bears() -> None:
     build(parameters_of(controller), memory)
     s, speed = memory.states, 10.0
     held = speed / controller.dfc.wheel_radius_m * controller.dfo.gear_ratio
-    for _ in range(300):
-        kept = govern(memory.gains, s, 200.0, speed, held)
-    assert kept == pytest.approx(200.0)
+    s[M.ROAD_LIMIT] = M.NO_LIMIT  # as a mode begins
+    assert govern(memory.gains, s, 200.0, speed, held) == 200.0
     s[M.ESTIMATE] = 60.0
     assert govern(memory.gains, s, 200.0, speed, 1.11 * held) == 60.0
     assert govern(memory.gains, s, 200.0, speed, 1.09 * held) == pytest.approx(61.0)
     assert govern(memory.gains, s, -200.0, speed, 1.11 * held) == pytest.approx(-62.0)  # it drags no wheel
+    for _ in range(138):
+        assert govern(memory.gains, s, 200.0, speed, held) < 200.01
+    assert govern(memory.gains, s, 200.0, speed, held) == 200.0
+    assert govern(memory.gains, s, 500.0, speed, held) == 500.0  # what was withdrawn has come back
 
 
 def test_wheels_slip_less_on_ice() -> None:
