@@ -5,6 +5,7 @@ Everything is predicted, on the fitted model and, where play is shown, with ±0.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,7 @@ from hil.engine.prediction.prediction import predict
 from reports.drive_figures import drive_figure
 from reports.figure import Band, Figure, Level, Mark, Trace
 from reports.labels import Label, channel_label
+from reports.order_figures import order_section
 from reports.svg_figure import svg_figure
 from test_plans import load_plan, plan_from_text
 from test_plans.metrics import (
@@ -197,6 +199,15 @@ def crossing() -> None:
     )
 
 
+def waterfall(recording: Recording, segment: Segment) -> None:
+    """Spectra of T_s over the wheel's speed, and the amplitude of its third order."""
+    section = order_section(recording, [segment])
+    assert section is not None
+    for name, figure in zip(("drive-waterfall", "drive-orders"), section.figures, strict=True):
+        (HERE / f"{name}.svg").write_bytes(svg_figure(replace(figure, wide=False)))
+        print(f"{name}: {figure.title.plain()}; {figure.caption}")
+
+
 def main() -> None:
     """All pictures, beside this file."""
     plain, plain_segments = run("driveability", MODEL)
@@ -207,6 +218,7 @@ def main() -> None:
     play(loose, loose_segments["change_of_mind_30"])
     jerk(loose, loose_segments["change_of_mind_30"])
     windows(accepted, accepted_segments["phase_0kmh"])
+    waterfall(accepted, accepted_segments["phase_20kmh"])
     settling(plain, plain_segments["regen_to_drive_50"])
 
 
