@@ -50,9 +50,12 @@ class _Stretch(NamedTuple):
 
 
 def order_section(recording: Recording, segments: Iterable[Segment]) -> Section | None:
-    """A waterfall and the tracked orders of each segment that runs through speeds; None if none does."""
+    """A waterfall and the tracked orders of each segment that runs through speeds; None if none does.
+
+    Only of benches that declare what turns with the wheel: on others they would make every report longer.
+    """
     figures: list[Figure] = []
-    for segment in segments:
+    for segment in (one for one in segments if one.wheel_orders):
         stretches = _stretches(recording, segment)
         if len(figures) < 2 * _MOST_SEGMENTS and stretches:
             found = (waterfall(segment, stretches), tracked_orders(segment, stretches))
@@ -76,14 +79,9 @@ def waterfall(segment: Segment, stretches: list[_Stretch]) -> Figure | None:
     speeds = [speed for speed, _, _ in spectra]
     unit_rad_s = _HEIGHT * (max(speeds) - min(speeds)) / max(1, len(speeds) - 1)
     gap = np.array([np.nan])
-    x = np.concatenate([part for _, frequency, _ in spectra for part in (frequency, gap)])
-    y = np.concatenate(
-        [
-            part
-            for speed, f, amplitude in spectra
-            for part in (speed + unit_rad_s / largest * np.where(f < _LOW_HZ, 0.0, amplitude), gap)
-        ]
-    )
+    x = np.concatenate([part for _, frequency, _ in spectra for part in (frequency, gap)])[:-1]
+    heights = [speed + unit_rad_s / largest * np.where(f < _LOW_HZ, 0.0, a) for speed, f, a in spectra]
+    y = np.concatenate([part for height in heights for part in (height, gap)])[:-1]
     label = channel_label(_CHANNEL)
     traces = [Trace(Label("Amplitude of", label.symbol), x, y, "phase")]
     for role, order in zip(_ROLES, segment.wheel_orders, strict=False):
@@ -105,7 +103,7 @@ def waterfall(segment: Segment, stretches: list[_Stretch]) -> Figure | None:
 
 
 def tracked_orders(segment: Segment, stretches: list[_Stretch]) -> Figure | None:
-    """Amplitude of each declared order over the wheel's speed; None where none is declared or turns."""
+    """Amplitude of each declared order over the wheel's speed; None where none turns often enough."""
     traces = []
     for role, order in zip(_ROLES, segment.wheel_orders, strict=False):
         points = [

@@ -59,7 +59,7 @@ def test_in_the_waterfall_the_order_moves_and_the_resonance_stays() -> None:
     fall, _ = figures()
     spectra, line = fall.traces
     assert line.x == pytest.approx(ORDER * line.y / (2 * np.pi))
-    ends = np.flatnonzero(np.isnan(spectra.x))
+    ends = [*np.flatnonzero(np.isnan(spectra.x)), len(spectra.x)]
     assert len(ends) == 16
     first = 0
     for end in ends:
@@ -74,7 +74,7 @@ def test_in_the_waterfall_the_order_moves_and_the_resonance_stays() -> None:
 
 def test_a_steady_speed_and_an_axle_without_orders() -> None:
     assert order_section(recorded(10.0 + 0.0 * TIME), [segment()]) is None
-    assert [one.id for one in figures(wheel_orders=())] == ["waterfall-run_up"]
+    assert order_section(recorded(), [segment(wheel_orders=())]) is None
     assert order_section(recorded(), [segment(step_s=11.0)]) is None
 
 
