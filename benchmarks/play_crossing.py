@@ -83,12 +83,20 @@ def controllers() -> dict[str, Controller | None]:
     crossing = load_controller(CROSSING)
     assert crossing.play is not None
     blind = crossing.play.model_copy(update={"correction": 0.0})
+    slower = crossing.play.model_copy(
+        update={
+            "crossing_speed_rad_s": 1.5,
+            "follow_gradient_nm_s": 6000.0,
+            "follow_time_constant_s": 0.015,
+        }
+    )
     limits = RequestLimits(zero_band_nm=60.0, zero_gradient_nm_s=3000.0)
     return {
         "shipped lead": None,
         "lead, 3,000 N m/s between ±60 N m": load_controller(LEAD).model_copy(update={"request": limits}),
         "crossing of the play": crossing,
-        "the same, without correction": crossing.model_copy(update={"play": blind}),
+        "slower: 1.5 rad/s, 6,000 N m/s, 15 ms": crossing.model_copy(update={"play": slower}),
+        "without correction": crossing.model_copy(update={"play": blind}),
     }
 
 
