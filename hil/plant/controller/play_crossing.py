@@ -29,6 +29,15 @@ from hil.plant.controller import memory as M
 from hil.plant.controller.filters import Filter, settle, step, tustin
 
 _WASHED_OUT = 10.0  # rad/s, below which a speed error is not taken for a twist
+_POSITIVE = (
+    "play_shaft_stiffness",
+    "play_vehicle_inertia",
+    "play_crossing_speed",
+    "play_crossing_torque",
+    "play_follow_gradient",
+    "play_follow_time",
+    "play_release_gradient",
+)
 _FIRM = 0.1  # share of k g from which on a torque is believed to lie on a flank
 
 
@@ -44,8 +53,10 @@ class PlayCrossing:
         ratio, dt = p["gear_ratio"], p["sample_time"]
         rotor = p["play_motor_inertia"] * ratio
         delay = p["play_dead_time"] / dt
-        if min(p["play_shaft_stiffness"], p["play_follow_time"], rotor) <= 0.0 or not (
-            0.0 <= delay <= MOST_DEAD_TIME_SAMPLES
+        if (
+            min(rotor, *(p[name] for name in _POSITIVE)) <= 0.0
+            or p["play_half_gap"] < 0.0
+            or not 0.0 <= delay <= MOST_DEAD_TIME_SAMPLES
         ):
             raise ValueError("the reference model of the play is none")
         self._gains |= {

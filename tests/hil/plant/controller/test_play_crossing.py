@@ -164,5 +164,9 @@ def test_parameters_that_are_no_reference_are_refused() -> None:
         ("play_follow_time", 0.0),
         ("play_motor_inertia", 0.0),
         ("play_shaft_stiffness", -1.0),
+        ("play_crossing_torque", 0.0),
+        ("play_release_gradient", 0.0),
+        ("play_vehicle_inertia", 0.0),
+        ("play_half_gap", -0.01),
     ):
         assert build({**good, name: value}, Memory()) == 2, name  # OUT_OF_RANGE
