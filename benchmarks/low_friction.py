@@ -16,6 +16,7 @@ import numpy.typing as npt
 import benches
 import test_plans
 from hil.core.controller import load_controller
+from hil.core.controller.shaping import SlipWithdrawal
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model, load_model
 from hil.fmu import Axle
@@ -47,23 +48,30 @@ def slippery_axle() -> Model:
     return Model(shipped.kind, shipped.parameters, (friction,))
 
 
-def on_the_road(model: Model, controller: str, end_s: float) -> tuple[Axle, Array, Array]:
-    """An axle at speed, with a shipped controller by name ('': none); times in s, torque that is asked."""
+def on_the_road(
+    model: Model, controller: str, end_s: float, slip: SlipWithdrawal | None = None
+) -> tuple[Axle, Array, Array]:
+    """An axle at speed, with a shipped controller by name ('': none); times in s, torque that is asked.
+
+    With `slip` the controller withdraws what the road does not bear.
+    """
     file = load_controller(CONTROLLERS / f"{controller}.toml") if controller else None
+    if file is not None and slip is not None:
+        file = file.model_copy(update={"slip": slip})
     time_s = np.arange(0.0, end_s, 1e-3)
     asked_nm = ASKED_NM if controller else ASKED_NM / model.parameters["gear_ratio"]
     axle = Axle(model, file, initial_speed_m_s=SPEED_M_S)
     return axle, time_s, np.where(time_s >= STEP_S, asked_nm, 0.0)
 
 
-def ride(controller: str) -> Ride:
+def ride(controller: str, slip: SlipWithdrawal | None = None) -> Ride:
     """A step on that road, by a shipped controller's name; '' without one."""
     model = slippery_axle()
-    axle, time_s, asked_nm = on_the_road(model, controller, END_S)
+    axle, time_s, asked_nm = on_the_road(model, controller, END_S, slip)
     out = axle.play(asked_nm)
     shaft = out["shaft_torque_nm"][time_s >= STEP_S + 0.5]
-    slip = out["wheel_speed_rad_s"] - out["vehicle_speed_m_s"] / model.wheel_radius_m
-    return Ride(float(shaft.min()), float(shaft.max()), float(slip.max()))
+    ahead = out["wheel_speed_rad_s"] - out["vehicle_speed_m_s"] / model.wheel_radius_m
+    return Ride(float(shaft.min()), float(shaft.max()), float(ahead.max()))
 
 
 def main() -> None:
@@ -73,8 +81,14 @@ def main() -> None:
         "| control | T_s from, N m | to, N m | range, N m | against none | slip, rad/s |\n"
         "|---|---|---|---|---|---|"
     )
-    for name, words in (("", "none"), ("phase_stabilization", "lead"), ("gain_stabilization", "notch")):
-        one = ride(name)
+    for name, words, slip in (
+        ("", "none", None),
+        ("phase_stabilization", "lead", None),
+        ("gain_stabilization", "notch", None),
+        ("phase_stabilization", "lead, slip up to 10 %", SlipWithdrawal(allowed=0.1)),
+        ("phase_stabilization", "lead, slip up to 5 %", SlipWithdrawal(allowed=0.05)),
+    ):
+        one = ride(name, slip)
         print(
             f"| {words} | {one.lowest_nm:.0f} | {one.highest_nm:.0f} | {one.range_nm:.0f} "
             f"| {one.range_nm / free.range_nm - 1:+.0%} | {one.slip_rad_s:.1f} |"

@@ -10,12 +10,13 @@ from hil.core.result import RunResult, Segment
 from reports.channel_figures import channels_section, further_section, overview_section, sweep_section
 from reports.drive_figures import drive_section
 from reports.figure import Section
+from reports.order_figures import order_section
 from reports.step_figures import step_section
 from reports.stretch import thinned
 
 
 def sections(recording: Recording, result: RunResult | None) -> list[Section]:
-    """Steps by initial speed, other segments, the whole run, further channels; without segments all."""
+    """Steps by initial speed, other segments, orders, the whole run, further channels; else all channels."""
     whole = thinned(recording)
     if result is None or not result.segments:
         return _anchored([_filled(channels_section(recording, whole))])
@@ -27,6 +28,8 @@ def sections(recording: Recording, result: RunResult | None) -> list[Section]:
     found = [section for section in [drive_section(recording, result.segments, criteria)] if section]
     found += [step_section(recording, group, criteria) for group in steps.values()]
     found += [sweep_section(recording, s) for s in result.segments if s.kind != "step"]
+    orders = order_section(recording, result.segments)
+    found += [orders] if orders is not None else []
     of_all = [section(recording, whole, result.segments) for section in (overview_section, further_section)]
     found += [section for section in of_all if section]
     return _anchored([_filled(section) for section in found])

@@ -65,7 +65,8 @@ def not_checked(plan: Plan, recording: Recording, segments: Iterable[Segment]) -
         except HilError:  # a damaged file
             continue
         if names:
-            little = f"segment '{segment.id}': too little torque or speed"
+            why = "too little torque or speed" + (", or wheels that slide," if segment.slippery else "")
+            little = f"segment '{segment.id}': {why}"
             found.append(f"{little} to hold {', '.join(names)} against others")
     return tuple(found)
 

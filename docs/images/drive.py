@@ -5,10 +5,13 @@ Everything is predicted, on the fitted model and, where play is shown, with ±0.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from benchmarks.play_crossing import CROSSING, LEAD, LIBRARY, PLAN
+from hil.core.controller import load_controller
 from hil.core.model import EffectUse, Model, load_model
 from hil.core.recording import Recording
 from hil.core.result import Segment
@@ -17,9 +20,11 @@ from hil.engine.prediction.prediction import predict
 from reports.drive_figures import drive_figure
 from reports.figure import Band, Figure, Level, Mark, Trace
 from reports.labels import Label, channel_label
+from reports.order_figures import order_section
 from reports.svg_figure import svg_figure
-from test_plans import load_plan
+from test_plans import load_plan, plan_from_text
 from test_plans.metrics import (
+    Clunk,
     Delay,
     Jerk,
     OvershootShaftTorque,
@@ -174,15 +179,46 @@ def settling(recording: Recording, segment: Segment) -> None:
     )
 
 
+def crossing() -> None:
+    """A reversal through play with the shipped lead, and with a torque that crosses it."""
+    plan = plan_from_text(PLAN, "reversal.yaml", LIBRARY)
+    traces, clunks = [], []
+    for role, words, controllers in (
+        ("gain", "lead", None),
+        ("phase", "crossing of the play", {LEAD: load_controller(CROSSING)}),
+    ):
+        found = predict(plan, load_bench(DEFAULT_BENCH), PLAY, controllers=controllers)
+        x, y = around(found.recording, found.segments[0], -0.05, 0.3)
+        traces.append(Trace(Label(f"Shaft torque, {words}"), x, y, role))
+        clunks.append(Clunk().compute(found.recording, found.segments[0]))
+    chart(
+        "drive-crossing",
+        f"Regeneration to drive at 30 km/h: clunk {clunks[0]:,.0f} and {clunks[1]:,.0f} N m/s",
+        tuple(traces),
+        x_range=(-0.05, 0.3),
+    )
+
+
+def waterfall(recording: Recording, segment: Segment) -> None:
+    """Spectra of T_s over the wheel's speed, and the amplitude of its third order."""
+    section = order_section(recording, [segment])
+    assert section is not None
+    for name, figure in zip(("drive-waterfall", "drive-orders"), section.figures, strict=True):
+        (HERE / f"{name}.svg").write_bytes(svg_figure(replace(figure, wide=False)))
+        print(f"{name}: {figure.title.plain()}; {figure.caption}")
+
+
 def main() -> None:
     """All pictures, beside this file."""
     plain, plain_segments = run("driveability", MODEL)
     loose, loose_segments = run("driveability", PLAY)
     accepted, accepted_segments = run("acceptance", MODEL)
+    crossing()
     response(plain, plain_segments["back_out_30"])
     play(loose, loose_segments["change_of_mind_30"])
     jerk(loose, loose_segments["change_of_mind_30"])
     windows(accepted, accepted_segments["phase_0kmh"])
+    waterfall(accepted, accepted_segments["phase_20kmh"])
     settling(plain, plain_segments["regen_to_drive_50"])
 
 

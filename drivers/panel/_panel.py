@@ -93,6 +93,8 @@ _SETTINGS = {
     "f1_ns_m": ("EFW1", "AFW1", "road load f1", "N s/m", 1.0),
     "f2_ns2_m2": ("EFW2", "AFW2", "road load f2", "N s²/m²", 1.0),
     "slip": ("ESLP", "ASLP", "slip", "%", 100.0),
+    "friction_left": ("EMUL", "AMUL", "friction left", "", 1.0),
+    "friction_right": ("EMUR", "AMUR", "friction right", "", 1.0),
 }
 
 
@@ -189,7 +191,7 @@ class Panel:
                 raise self._failed(f"{name} reads back as '{printable(' '.join(parts), 40)}'") from None
             if abs(stands - value * factor) > _NEAR * max(abs(value * factor), 1.0):
                 raise self._failed(f"{name} reads back as {stands:g} {unit}, {value * factor:g} was written")
-            confirmed[name] = f"{stands:g} {unit}"
+            confirmed[name] = f"{stands:g} {unit}".rstrip()
         return confirmed
 
     def examine(self, *, ask: bool) -> Examined:

@@ -116,9 +116,18 @@ class Segment(_Frozen):
         None,
         description="vehicle speed over wheel speed: the bench's wheel radius, less the slip it was set to",
     )
+    friction: float | None = Field(
+        None,
+        description="least friction under a tyre, a share of a dry road's, as set; null: never set",
+    )
     wheel_orders: tuple[float, ...] = Field(
         (), description="multiples of the wheel's revolutions that its bench file declares as excited"
     )
+
+    @property
+    def slippery(self) -> bool:
+        """Whether the road was set to less friction than a dry one has: wheels need not roll."""
+        return self.friction is not None and self.friction < 1.0
 
 
 class StreamClock(_Frozen):

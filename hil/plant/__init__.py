@@ -2,6 +2,7 @@
 
 from hil.plant._batch_simulation import ideal_sensors, simulate_many
 from hil.plant._linear import LinearSystem, linear_system, linear_system_of, system
+from hil.plant._motor_limits import refuse_motor_limits
 from hil.plant._replay import Start, gear_ratio_of, load_of, replay, simulate, start_of
 from hil.plant._sensors import DELAY as SENSOR_DELAY
 from hil.plant._sensors import GAIN as SENSOR_GAIN
@@ -29,6 +30,7 @@ __all__ = [
     "load_of",
     "pack",
     "refuse_diverged_state",
+    "refuse_motor_limits",
     "refuse_too_stiff",
     "replay",
     "sensor_of",

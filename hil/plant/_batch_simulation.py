@@ -141,7 +141,7 @@ def _parts(parameters: Array, dt: float) -> tuple[npt.NDArray[np.int64], npt.NDA
         acts = np.any(
             parameters[:, [P.place(effect.id, name) for name in effect.acting()]] != effect.off, axis=1
         )
-        if not acts.any() or (law.shape is not None or law.slope is not None):
+        if not acts.any() or any(one is not None for one in (law.shape, law.limit, law.slope)):
             continue
         steady = law.steady(tuple(own.T)) if law.steady is not None else False
         with_what = _BY_MOTION if law.follows is None else _BY_ANGLE

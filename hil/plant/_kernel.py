@@ -135,10 +135,10 @@ def _hold(x, memories, p, slewed, wanted, coupled, load, duration, longest_step)
 def sample(x, memories, p, slewed, old, new, late, dt, coupled, load, longest_step):  # type: ignore[no-untyped-def]
     """One controller sample: `old` torque acts for `late` seconds, then `new` until `dt`."""
     if late > 0.0:
-        wanted = L.shaped(old, p)
+        wanted = L.limited(L.shaped(old, p), relative_speed(x), p)
         x, memories, slewed = _hold(x, memories, p, slewed, wanted, coupled, load, late, longest_step)
     if late < dt:
-        wanted = L.shaped(new, p)
+        wanted = L.limited(L.shaped(new, p), relative_speed(x), p)
         x, memories, slewed = _hold(x, memories, p, slewed, wanted, coupled, load, dt - late, longest_step)
     return x, memories, slewed
 
@@ -199,7 +199,7 @@ def run(torque, load, coupled, dt, vector, start, longest_step, out):  # type: i
     if late < 1e-9 * dt:
         late = 0.0
     before = start[START_MOTOR_TORQUE]
-    slewed = L.shaped(before, p)
+    slewed = L.limited(L.shaped(before, p), start[START_MOTOR_SPEED], p)
     x, memories = initial_state(
         p,
         start[START_MOTOR_SPEED],

@@ -11,6 +11,7 @@ that calls it, not when a compiled one is loaded:
     moves_shaft, slows_rotor, may_stick, loads, moves_tyre, remembers, turns, pushes, leaps
         whether any effect that has such a law does anything: (p)
     shaped: the torque that a request becomes: (torque, p)
+    limited: what the motor gives of it at the rotor's speed: (torque, speed, p)
     steepest: the steepest slope of the acting torque in N m/s: (p)
     stretched: what is left of a twist for the shafts: (twist, chain, memories, p)
     remembered: the memories after a step of h seconds: (before, after, chain, memories, p, h)
@@ -179,6 +180,17 @@ def _shaped(before: Any, effect: Effect) -> Any:
     return _compile(shape)
 
 
+def _limited(before: Any, effect: Effect) -> Any:
+    first, last, _, acts = _place(effect.id)
+    law = _law(effect.law.limit)  # type: ignore[arg-type]
+
+    def limit(torque, speed, p):  # type: ignore[no-untyped-def]
+        torque = before(torque, speed, p)
+        return law(torque, speed, p[first:last]) if acts(p) else torque
+
+    return _compile(limit)
+
+
 def _gentler(before: Any, effect: Effect) -> Any:
     first, last, _, acts = _place(effect.id)
     law = _law(effect.law.slope)  # type: ignore[arg-type]
@@ -280,6 +292,7 @@ _MAKERS: dict[str, Callable[[], Any]] = {
     "leaps": lambda: _any_of("leap"),
     "pushes": lambda: _any_of("shaft", "loss", "dry", "load", "tyre", "tyre_rate"),
     "shaped": lambda: _in_turn("shape", _shaped, lambda torque, p: torque),
+    "limited": lambda: _in_turn("limit", _limited, lambda torque, speed, p: torque),
     "steepest": lambda: _in_turn("slope", _gentler, lambda p: _NO_LIMIT),
     "stretched": lambda: _in_turn("stretch", _stretched, lambda twist, chain, memories, p: twist),
     "shaft_leap": lambda: _in_turn("leap", _leaping, lambda before, after, chain, memories, p, h: (0.0, 0.0)),

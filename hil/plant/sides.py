@@ -40,7 +40,7 @@ SHAFT, SPEED, TYRE, ANGLE = range(X.MOVING, X.MOVING + 4)
 LUMPED, SEPARATE = X.AT_REST, (*X.AT_REST, 0.0, 0.0, 0.0, 0.0)
 
 _FRICTION = P.place(EFFECT, "differential_friction_nm")
-_LEFT, _RIGHT = P.place(EFFECT, "friction_left"), P.place(EFFECT, "friction_right")
+FRICTION_LEFT, FRICTION_RIGHT = P.place(EFFECT, "friction_left"), P.place(EFFECT, "friction_right")
 _SLIDES_AT = P.place("tyre_friction", "peak_nm"), P.place("tyre_friction", "sliding_nm")
 _OPTIONS = {"error_model": "numpy", "forceinline": True}
 
@@ -69,7 +69,7 @@ def _on_side(x, p, side):  # type: ignore[no-untyped-def]
     """State and numbers of an axle both of whose sides are as one is: left 1, right -1."""
     x = put(x, X.WHEEL_SPEED, x[X.WHEEL_SPEED] + side * x[SPEED])
     x = put(x, X.TYRE_TWIST, x[X.TYRE_TWIST] + side * x[TYRE])
-    share = p[_LEFT] if side > 0.0 else p[_RIGHT]
+    share = p[FRICTION_LEFT] if side > 0.0 else p[FRICTION_RIGHT]
     for_side = put(p, _SLIDES_AT[0], share * p[_SLIDES_AT[0]])
     return x, put(for_side, _SLIDES_AT[1], share * p[_SLIDES_AT[1]])
 

@@ -394,10 +394,17 @@ class SimulatedBench:
     def set_vehicle(self, values: Mapping[str, float]) -> None:
         """The dyno controller's vehicle model has other values from now on: its panel has set them."""
         self._compute()
-        for name, value in values.items():
+        friction = {name: value for name, value in values.items() if name not in _VEHICLE_MODEL}
+        for name in values.keys() - friction.keys():
             for node in self._dynos:
-                node.preset(0x2000, _VEHICLE_MODEL[name], value)
+                node.preset(0x2000, _VEHICLE_MODEL[name], values[name])
         self._take_vehicle_model()
+        self._plant.set_vehicle(**friction)
+
+    @property
+    def has_friction(self) -> bool:
+        """Whether the road's friction bounds what the tyres pass."""
+        return self._plant.has_friction
 
     def _take_vehicle_model(self) -> None:
         left = self._dynos[0]

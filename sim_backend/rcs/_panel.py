@@ -18,20 +18,29 @@ _SETTINGS = {
     "EFW1": ("AFW1", 1_000.0, "f1_ns_m", 1.0),
     "EFW2": ("AFW2", 100.0, "f2_ns2_m2", 1.0),
     "ESLP": ("ASLP", 50.0, "slip", 0.01),
+    "EMUL": ("AMUL", 10.0, "friction_left", 1.0),
+    "EMUR": ("AMUR", 10.0, "friction_right", 1.0),
 }
+_FRICTION = ("EMUL", "EMUR")
 _LATE_TICKS, _LOOK_TICKS, _LOOK_S = 60, 10, 0.25
 _READ = {read: write for write, (read, *_) in _SETTINGS.items()}
 
 
 class EmulatedPanel:
-    """What the panel answers; `taken` is called with each value that somebody wrote."""
+    """What the panel answers; `taken` is called with each value that somebody wrote.
 
-    def __init__(self, taken: Callable[[VehicleAndRoad], None] = lambda vehicle: None) -> None:
+    Without `friction` its vehicle has tyres that hold whatever the road is, and it refuses a friction.
+    """
+
+    def __init__(
+        self, taken: Callable[[VehicleAndRoad], None] = lambda vehicle: None, *, friction: bool = True
+    ) -> None:
         self.remote = False
         self.alarms: list[str] = []
         self.latched: list[str] = []  # alarms that a reset does not clear
         self.busy = 0  # so many requests are answered by "busy"
-        self.values = dict.fromkeys(_SETTINGS, 0.0)
+        self.values = {code: 1.0 if code in _FRICTION else 0.0 for code in _SETTINGS}
+        self._has_friction = friction
         self._taken = taken
         self._telegrams = Telegrams()
 
@@ -77,7 +86,8 @@ class EmulatedPanel:
             value = float(text)
         except ValueError:
             return Answer(function, 1, (SYNTAX,))
-        if not 0.0 <= value <= largest:
+        least = 1e-3 if function in _FRICTION else 0.0
+        if not least <= value <= largest or (function in _FRICTION and not self._has_friction):
             return Answer(function, 1, (DATA,))
         self.values[function] = value
         self._taken(VehicleAndRoad(**{key: value * unit}))

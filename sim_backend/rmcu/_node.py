@@ -205,5 +205,8 @@ class RmcuNode:
         if self.mode != M.OFF:
             return parameters.NOT_OFF
         result = parameters.build(self._stored | self._held, self.memory)
+        if result == parameters.OK:  # what is optional counts for one apply: the next controller may lack it
+            for name in parameters.OPTIONAL:
+                self._stored.pop(name, None)
         self._whole[R.VALID] = result == parameters.OK
         return result

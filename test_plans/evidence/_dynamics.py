@@ -47,7 +47,7 @@ def lag_in_words(recording: Recording, segment: Segment) -> dict[str, str]:
 
 def inertia_in_words(recording: Recording, segment: Segment) -> dict[str, str]:
     """T_s and wheel speed of a step, with the inertia that they make, where no car has it; else empty."""
-    if segment.kind != "step" or segment.load != "vehicle":
+    if segment.kind != "step" or segment.load != "vehicle" or segment.slippery:
         return {}
     if _SHAFT not in recording or _WHEEL not in recording:
         return {}

@@ -337,7 +337,8 @@ def _means_of(rows: Mapping[str, Array], length: int, segment: Segment) -> Means
     }
     means = {name: _means(values, length) for name, values in blocks.items()}
     ratio = segment.gear_ratio
-    return Means(means, largest, ratio or _ratio_of_speeds(means), segment.rolling_radius_m, ratio)
+    radius_m = None if segment.slippery else segment.rolling_radius_m  # wheels that slide do not roll
+    return Means(means, largest, ratio or _ratio_of_speeds(means), radius_m, ratio)
 
 
 def _ratio_of_speeds(means: Mapping[str, Array]) -> float | None:

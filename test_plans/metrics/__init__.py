@@ -36,6 +36,7 @@ from test_plans.metrics.stability import (
     StabilityTorqueRequest,
     instability,
 )
+from test_plans.metrics.wheel_slip import WheelSlip
 from test_plans.registry import Registry
 
 _OWN: tuple[type[Metric], ...] = (
@@ -54,6 +55,7 @@ _OWN: tuple[type[Metric], ...] = (
     PlayCrossings,
     Clunk,
     ContactEnergy,
+    WheelSlip,
     Delay,
     SettlingToReference,
     Ripple,
@@ -115,6 +117,7 @@ __all__ = [
     "TimeInPlay",
     "Trough",
     "VibrationDose",
+    "WheelSlip",
     "WindowMetric",
     "contacts",
     "energy_within",

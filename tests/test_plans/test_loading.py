@@ -214,6 +214,8 @@ def test_built_in_plans() -> None:
         "identification",
         "short_identification",
         "slip",
+        "split_friction",
+        "take_off_on_low_friction",
     )
 
 

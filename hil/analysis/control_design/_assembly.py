@@ -12,9 +12,12 @@ from hil.analysis.identification import fit_chain
 from hil.core.channels import OUTPUTS
 from hil.core.controller import Controller, Dfc, Dfo, Lead, Notch, Wsc
 from hil.core.controller.bounds import SLOWEST_HZ
+from hil.core.controller.shaping import Play
 from hil.core.effects import finite_number
 from hil.core.errors import BadInputError
 from hil.core.model import Model
+
+_LANDING_MARGIN = 0.4  # of half a gap, as in the shipped play_crossing.toml
 
 
 def refuse_resonance(spec: DesignSpec, resonance_hz: float, where: str) -> None:
@@ -90,6 +93,7 @@ def controller_of(
             wheel_inertia_kg_m2=wheel_inertia_of(model, spec, plant, notes),
         ),
         plant=plant.filters,
+        play=_play_of(model, spec, plant),
         meta={"warnings": list(warnings)} if warnings else {},
     )
 
@@ -113,6 +117,24 @@ def wheel_inertia_of(model: Model, spec: DesignSpec, plant: DesignPlant, notes: 
         f"the observer's wheel inertia {value:.4g} kg m2 comes from a three-inertia chain fitted to the model"
     )
     return value
+
+
+def _play_of(model: Model, spec: DesignSpec, plant: DesignPlant) -> Play | None:
+    """A crossing of the play with the model's shafts; of functions, with those of the nearest chain."""
+    if spec.half_gap_rad is None:
+        return None
+    numbers = (chain_of(plant) if model.kind == "transfer_function" else model).parameters
+    return Play(
+        half_gap_rad=spec.half_gap_rad,
+        landing_margin_rad=_LANDING_MARGIN * spec.half_gap_rad,
+        motor_inertia_kg_m2=numbers["motor_inertia"],
+        shaft_stiffness_nm_rad=numbers["shaft_stiffness"],
+        shaft_damping_nms_rad=numbers["shaft_damping"],
+        tyre_stiffness_nm_rad=numbers.get("tyre_stiffness"),
+        tyre_damping_nms_rad=numbers.get("tyre_damping", 0.0),
+        vehicle_inertia_kg_m2=numbers["vehicle_inertia"],
+        dead_time_s=plant.delay_s,
+    )
 
 
 def chain_of(plant: DesignPlant) -> Model:

@@ -50,6 +50,7 @@ class DesignSpec:
     wheel_radius_m: float = 0.33
     slip_floor_m_s: float = 1.0
     slip_limit: float = 0.2
+    half_gap_rad: float | None = None
     optimise: bool = False
     objective: Objective = "max"
     limits: MarginLimits = field(default_factory=MarginLimits)
@@ -94,6 +95,7 @@ class DesignSpec:
             ("--inertia", self.inertia_kg_m2, "kg m²"),
             ("--gear-ratio", self.gear_ratio, "(motor speed / wheel speed)"),
             ("--wheel-inertia", self.wheel_inertia_kg_m2, "kg m²"),
+            ("--half-gap", self.half_gap_rad, "rad"),
             ("speed_filter_time_s", self.speed_filter_time_s, "s"),
             ("feed_forward_time_s", self.feed_forward_time_s, "s"),
             ("observer_time_s", self.observer_time_s, "s"),

@@ -35,7 +35,7 @@ from hil.analysis.diagnosis.tell.verdict import verdict_of
 from hil.analysis.plausible import refuse_same_data, within_floating_point
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
-from hil.plant import gear_ratio_of
+from hil.plant import gear_ratio_of, refuse_motor_limits
 from hil.plant.sides import refuse_separate
 
 Array = npt.NDArray[np.float64]
@@ -76,6 +76,7 @@ def diagnose(
             gear ratio, values that no axle gives), hold the same data twice, or have no output of the model.
     """
     refuse_separate(model, "a diagnosis")
+    refuse_motor_limits(model, "a diagnosis")
     refuse_same_data(recordings, holdout)
     stated = stated_noise([*recordings, *holdout])
     asked = Asked.checked({**stated, **(noise or {})}, least or {}, at_most_s)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from pydantic import BaseModel
 
 from hil.analysis.control_design import lead, pole_assignment
 from hil.core.controller import Controller, Notch, Wsc
+from hil.core.errors import BadInputError
 
 Array = npt.NDArray[np.float64]
 
@@ -49,6 +51,19 @@ PARAMETERS = {
     "torque_limit_nm": Parameter(
         "limit", "N m", 1.0, 300.0, True, "largest |T_m*|; both integrators wait at it"
     ),
+    "crossing_speed_rad_s": Parameter("v_c", "rad/s", 0.01, 1e3, True, "v_c, crossing of the play"),
+    "follow_gradient_nm_s": Parameter("R", "N m/s", 1.0, 1e7, True, "R, largest rate of T_s in contact"),
+    "landing_margin_rad": Parameter("margin", "rad", 0.0, 1.0, False, "landing margin before the flank"),
+    "request_rise_nm_s": Parameter("rise", "N m/s", 1.0, 1e7, True, "largest gradient of rF_d* upwards"),
+    "request_fall_nm_s": Parameter("fall", "N m/s", 1.0, 1e7, True, "largest gradient of rF_d* downwards"),
+}
+#: Where those stand that belong to a table which a controller may lack.
+TABLES = {
+    "crossing_speed_rad_s": ("play", "crossing_speed_rad_s"),
+    "follow_gradient_nm_s": ("play", "follow_gradient_nm_s"),
+    "landing_margin_rad": ("play", "landing_margin_rad"),
+    "request_rise_nm_s": ("request", "rise_nm_s"),
+    "request_fall_nm_s": ("request", "fall_nm_s"),
 }
 #: Groups of which only one may be free.
 ALTERNATIVES = (
@@ -61,7 +76,10 @@ PAPER_NOTCH = {"notch_hz": 10.6, "notch_width": 2.0, "notch_depth": 0.08}
 
 
 def values_of(controller: Controller) -> dict[str, float]:
-    """Every number that can be tuned, as a controller has it; a lead or notch it lacks is the paper's."""
+    """Every number that can be tuned, as a controller has it; a lead or notch it lacks is the paper's.
+
+    Numbers of a table that it lacks are left out.
+    """
     wsc, dfc = controller.wsc, controller.dfc
     found = dict(PAPER_LEAD)
     if wsc.lead is not None:
@@ -90,11 +108,38 @@ def values_of(controller: Controller) -> dict[str, float]:
         "slip_limit": dfc.slip_limit,
         "observer_time_s": controller.dfo.time_constant_s,
         "torque_limit_nm": controller.torque_limit_nm,
+        **_of_tables(controller),
     }
 
 
+def _of_tables(controller: Controller) -> dict[str, float]:
+    parts = {name: (getattr(controller, table), key) for name, (table, key) in TABLES.items()}
+    return {name: float(getattr(part, key)) for name, (part, key) in parts.items() if part is not None}
+
+
+def refuse_missing_tables(controller: Controller, names: Iterable[str], where: str) -> None:
+    """Refuse numbers to be changed of a table that a controller lacks.
+
+    Raises:
+        BadInputError: names the number and the table.
+    """
+    for name in names:
+        table = TABLES.get(name, ("", ""))[0]
+        if table and getattr(controller, table) is None:
+            raise BadInputError(
+                f"{name}: controller '{controller.name}' has no table [{table}]",
+                where=where,
+                fix=f"add [{table}] to its file, or leave {name} out",
+            )
+
+
 def with_values(controller: Controller, values: Mapping[str, float], name: str = "") -> Controller:
-    """A controller with other numbers; a free lead takes the place of a notch, and the other way round."""
+    """A controller with other numbers; a free lead takes the place of a notch, and the other way round.
+
+    Raises:
+        BadInputError: a number of a table that it lacks.
+    """
+    refuse_missing_tables(controller, values, "controller")
     all_ = values_of(controller) | dict(values)
     dfc = controller.dfc.model_copy(
         update={
@@ -111,8 +156,19 @@ def with_values(controller: Controller, values: Mapping[str, float], name: str =
             "dfc": dfc,
             "wsc": _speed_control(controller, values, all_),
             "dfo": controller.dfo.model_copy(update={"time_constant_s": all_["observer_time_s"]}),
+            **_tables_with(controller, values),
         }
     )
+
+
+def _tables_with(controller: Controller, values: Mapping[str, float]) -> dict[str, BaseModel]:
+    found: dict[str, BaseModel] = {}
+    for name in values:
+        if name in TABLES:
+            table, key = TABLES[name]
+            part = found.get(table, getattr(controller, table))
+            found[table] = part.model_copy(update={key: values[name]})
+    return found
 
 
 def _speed_control(controller: Controller, values: Mapping[str, float], all_: Mapping[str, float]) -> Wsc:

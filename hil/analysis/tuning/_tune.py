@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.tuning._kept import CRITERIA, KEPT, Worse, worse_of
-from hil.analysis.tuning._parameters import PAPER_LEAD, PAPER_NOTCH, Space, values_of
+from hil.analysis.tuning._parameters import PAPER_LEAD, PAPER_NOTCH, Space, refuse_missing_tables, values_of
 from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._search import Effort, Search
 from hil.analysis.tuning._trial import Trial, Tried
@@ -142,9 +142,11 @@ def tune(
     """Search the free parameters for the largest worst margin.
 
     Raises:
-        BadInputError: the start is unstable on the model, or nothing keeps the hard limits.
+        BadInputError: the start is unstable on the model or lacks a table that is free, or nothing keeps
+            the hard limits.
     """
     space = Space(trial.free.free)
+    refuse_missing_tables(trial.start, space.names, trial.free.where)
     refuse_start(trial)
     with Pool(trial, processes) as pool:
         search = Search(

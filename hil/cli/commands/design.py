@@ -38,6 +38,7 @@ def _spec(options: Design) -> DesignSpec:
         gear_ratio=options.gear_ratio,
         wheel_inertia_kg_m2=options.wheel_inertia,
         torque_limit_nm=options.torque_limit,
+        half_gap_rad=options.half_gap,
         optimise=options.optimize,
         objective=_one_of("--objective", options.objective, get_args(Objective)),
         limits=MarginLimits(sensitivity_peak=options.largest_sensitivity),

@@ -70,6 +70,10 @@ class Design:
     wheel_inertia: Annotated[
         float | None, typer.Option("--wheel-inertia", help="J_l, wheels and dyno rotors, kg m² (equation 9)")
     ] = None
+    half_gap: Annotated[
+        float | None,
+        typer.Option("--half-gap", help="cross a play of this half gap, rad at the wheels ([play])"),
+    ] = None
     torque_limit: Annotated[float, typer.Option("--torque-limit", help="largest motor torque, N m")] = 150.0
     largest_sensitivity: Annotated[
         float, typer.Option("--largest-sensitivity", help="upper limit of |S| for --optimize")

@@ -15,6 +15,7 @@ import tomli_w
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from hil.core.controller.bounds import (
+    MOST_DEAD_TIME_SAMPLES,
     Alpha,
     Depth,
     Frequency,
@@ -32,6 +33,7 @@ from hil.core.controller.bounds import (
     denominator_checked,
     too_fast,
 )
+from hil.core.controller.shaping import Play, RequestLimits, Schedule, SlipWithdrawal
 from hil.core.errors.mistakes import Mistake, keyed, mistakes_of, refuse
 from hil.core.files import write_atomically
 from hil.core.files.toml_file import FORMAT, FormatNumber, parse_toml, refuse_other_kind, toml_text
@@ -134,6 +136,10 @@ class Controller(_Table):
     wsc: Wsc
     dfo: Dfo
     plant: Plant
+    request: RequestLimits | None = None
+    slip: SlipWithdrawal | None = None
+    play: Play | None = None
+    schedule: Schedule | None = None
     meta: dict[str, Any] = {}
 
     @property
@@ -187,6 +193,14 @@ def _contradictions(controller: Controller) -> list[Mistake]:
                 f"the filter {equation} would be improper"
             )
             found.append(Mistake(f"plant.{key}", what, f"give at least order {_order(above) - 1}"))
+    if controller.play is not None and controller.play.dead_time_s > (
+        longest_s := MOST_DEAD_TIME_SAMPLES * controller.sample_time_s
+    ):
+        what = (
+            f"play.dead_time_s is {controller.play.dead_time_s:g}: the RMCU waits for {longest_s:g} s at most"
+        )
+        fix = f"it remembers {MOST_DEAD_TIME_SAMPLES} samples; give a longer sample_time_s"
+        found.append(Mistake("play.dead_time_s", what, fix))
     return found
 
 

@@ -13,6 +13,8 @@ from pydantic_core import CoreSchema, core_schema
 SAMPLE_TIMES_S = (1e-4, 1e-2)
 SLOWEST_HZ = 0.01  # of a lead or a notch: no axle swings slower
 LARGEST_TORQUE_NM = 300.0
+MOST_SCHEDULE_POINTS = 6  # of a table of gains over speed
+MOST_DEAD_TIME_SAMPLES = 64  # that the RMCU's reference of the play waits for
 _OTHER_UNIT = "no axle needs more; check the unit"
 
 
@@ -62,6 +64,24 @@ Width = Annotated[float, Within(1e-3, 1e3, "narrower or wider (8) is no notch")]
 Depth = Annotated[float, Within(0.0, 10.0, "0 lets nothing pass, 1 is no notch, and above 1 it amplifies")]
 Ratio = Annotated[float, Within(1e-3, 1e4, "the range of gears: motor speed / wheel speed")]
 Inertia = Annotated[float, Within(1e-6, 1e6, "the range of wheels, kg m2")]
+WheelTorque = Annotated[float, Within(0.0, 1e4, _OTHER_UNIT)]
+Gradient = Annotated[float, Within(0.0, 1e7, _OTHER_UNIT)]
+Slip = Annotated[float, Within(1e-3, 1.0, "a slip; 0.1 is usual")]
+HalfGap = Annotated[float, Within(0.0, 1.0, "radians at the wheels")]
+TwistSpeed = Annotated[float, Within(1e-2, 1e3, "radians per second at the wheels")]
+Factor = Annotated[float, Within(0.0, 100.0, "a factor of a gain")]
+Share = Annotated[float, Within(0.0, 1.0, "a share")]
+Stiffness = Annotated[float, Within(1e-3, 1e9, _OTHER_UNIT)]
+Damping = Annotated[float, Within(0.0, 1e9, _OTHER_UNIT)]
+DeadTime = Annotated[
+    float,
+    Within(
+        0.0,
+        MOST_DEAD_TIME_SAMPLES * SAMPLE_TIMES_S[1],
+        f"the RMCU waits for {MOST_DEAD_TIME_SAMPLES} samples at most; give it in seconds",
+    ),
+]
+Speed = Annotated[float, Within(0.0, 200.0, "speeds of vehicles, m/s")]
 #: Of a polynomial, where it is not 0.
 COEFFICIENTS = (1e-60, 1e60)
 

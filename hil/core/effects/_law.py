@@ -46,6 +46,8 @@ class Law:
         chain: changes the linear numbers (a dict of `Chain`'s fields) by the effect's values.
         prepare: the values that the other functions are given, of the chain and the effect's own values.
         shape: the torque that a request becomes, without memory: (torque, values).
+        limit: what the motor gives of a torque at the rotor's speed in rad/s: (torque, speed, values). The
+            torque of a request is held over a sample, and its limit with it.
         slope: the steepest slope of the acting torque in N m/s: (values).
         stretch: what is left of a twist for the shafts: (twist, chain, memory, values).
         shaft: torque of the shafts beside stiffness and damping.
@@ -70,6 +72,7 @@ class Law:
     chain: Callable[[dict[str, float], Mapping[str, Any]], None] | None = None
     prepare: Callable[[Chain, Values], Values] | None = None
     shape: Callable[[float, Values], float] | None = None
+    limit: Callable[[float, float, Values], float] | None = None
     slope: Callable[[Values], float] | None = None
     stretch: Callable[[float, Chain, float, Values], float] | None = None
     shaft: Force | None = None
@@ -95,6 +98,7 @@ class Law:
             function is not None
             for function in (
                 self.shape,
+                self.limit,
                 self.slope,
                 self.shaft,
                 self.loss,

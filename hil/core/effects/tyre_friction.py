@@ -7,8 +7,9 @@ a tyre with stiffness k and damping D; with v = ω_l - ω_v
     θ' = v - |v|·k·θ / g(v),  T = k·θ + D·θ',  g(v) = µ·(T_s + (T_p - T_s)·exp(-(v/v_s)²))
 
 T never passes g for long: T_p is the largest torque before the tyre slides, T_s what it holds when it slides
-fast, both wheels together. µ is 1, and `patch_friction` where the vehicle is on a patch; patches and the
-stretches between them have the same length. The damping acts on the twist's own rate: it does not hold a tyre
+fast, both wheels together. µ is `road_friction`, and `patch_friction` times that where the vehicle is on a
+patch; patches and the stretches between them have the same length. A plan changes `road_friction` in the
+middle of a run, at the dynos' panel. The damping acts on the twist's own rate: it does not hold a tyre
 that slides. Where `tyre_slip` is there too, its relaxation comes on top.
 """
 
@@ -25,9 +26,11 @@ from hil.core.effects._law import Law, Motion, Values
 
 def _held(speed: float, travel: float, chain: Chain, values: Values) -> float:
     """Largest torque in N m at a sliding speed in rad/s, after a travel of the vehicle in rad."""
-    peak, sliding, fades_at, friction, length = values
+    peak, sliding, fades_at, friction, length, road = values
     ratio = speed / fades_at
     torque = sliding + (peak - sliding) * math.exp(-ratio * ratio)
+    if road != 1.0:
+        torque *= road
     if friction != 1.0 and math.floor(travel * chain.wheel_radius_m / length) % 2.0 == 1.0:
         torque *= friction
     return torque
@@ -96,6 +99,15 @@ EFFECT = Effect(
             1e-2,
             1e5,
             "length of patches, and of what lies between",
+            optional=True,
+            default=1.0,
+        ),
+        Parameter(
+            "road_friction",
+            "1",
+            1e-3,
+            10.0,
+            "friction of the whole road, a share of peak_nm and sliding_nm",
             optional=True,
             default=1.0,
         ),

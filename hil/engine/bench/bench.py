@@ -203,7 +203,11 @@ def _with_stand_ins(connections: Connections, world: SimulatedBench, opened: Exi
 
     def panel() -> str:
         radius_m = connections.vehicle.wheel_radius_m
-        port = PanelPort(EmulatedPanel(lambda vehicle: world.set_vehicle(vehicle.at_wheels(radius_m))))
+        port = PanelPort(
+            EmulatedPanel(
+                lambda vehicle: world.set_vehicle(vehicle.at_wheels(radius_m)), friction=world.has_friction
+            )
+        )
         opened.callback(port.close)
         connections.loop.every(_SERIAL_S, port.tick)
         return port.port

@@ -212,7 +212,9 @@ def _panels(bench: BenchFile, world: SimulatedBench, opened: contextlib.ExitStac
     found = {}
     for name, table in bench.devices.items():
         if isinstance(table, PanelTable):
-            panel = EmulatedPanel(lambda vehicle: world.set_vehicle(vehicle.at_wheels(radius_m)))
+            panel = EmulatedPanel(
+                lambda vehicle: world.set_vehicle(vehicle.at_wheels(radius_m)), friction=world.has_friction
+            )
             found[name] = PanelPort(panel, waits=False)
             opened.callback(found[name].close)
     return found

@@ -13,7 +13,7 @@ import numpy as np
 
 from drivers import parameters_of
 from hil.core.controller import Controller
-from hil.core.errors import BadInputError
+from hil.core.errors import BadInputError, BenchError
 from hil.core.model import Model
 from hil.core.vehicle import VehicleAndRoad
 from hil.engine.bench.bench_tables import BenchFile
@@ -192,8 +192,19 @@ class PredictedDyno:
         self._loop.transact(_SDO_TICKS * len(SIDES))
 
     def set_vehicle(self, vehicle: VehicleAndRoad) -> None:
-        """Set mass, road load and slip."""
-        self._loop.closed.plant.set_vehicle(**vehicle.at_wheels(self._file.vehicle.wheel_radius_m))
+        """Set mass, road load, slip and friction.
+
+        Raises:
+            BenchError: a friction of tyres that hold whatever the road is.
+        """
+        plant = self._loop.closed.plant
+        if (vehicle.friction_left, vehicle.friction_right) != (None, None) and not plant.has_friction:
+            raise BenchError(
+                "the panel refuses a friction: the tyres of this model hold whatever the road is",
+                where="set_vehicle",
+                fix='add [[effects]] id = "tyre_friction" to the model of the bench',
+            )
+        plant.set_vehicle(**vehicle.at_wheels(self._file.vehicle.wheel_radius_m))
 
     def release_vehicle(self, initial_speed_m_s: float) -> None:
         """Simulate the vehicle from now on."""

@@ -192,6 +192,7 @@ class PredictionConductor(BenchConductor):
         """Let the computed dynos have it; a panel is not computed."""
         self._check.set_vehicle(vehicle)
         self._dyno.set_vehicle(vehicle)
+        self._take_friction(vehicle)
 
     def play(self, quantity: Quantity, samples_nm: Array, segment: PlannedSegment | None) -> None:
         """Request all samples at once, then take the torque away and switch it off."""

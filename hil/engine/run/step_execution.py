@@ -59,6 +59,7 @@ class BenchConductor:
         self._check = Rehearsal(bench.file)  # the bench's limits lie below every plan
         self._controller: Controller | None = None
         self._speed_m_s, self._slip = 0.0, bench.file.vehicle.slip
+        self._friction: dict[str, float] = {}  # under each tyre, as set
         self._load: Literal["vehicle", "speed"] = "speed"
         self.segments: list[Segment] = []
         self.controllers: dict[str, str] = {}
@@ -138,6 +139,7 @@ class BenchConductor:
         for name, device in self._bench.further.items():
             if isinstance(device, SetsVehicle):
                 self._confirmed |= device.set_vehicle(vehicle)
+                self._take_friction(vehicle)
                 words = ", ".join(f"{key} {value}" for key, value in self._confirmed.items())
                 self._event("vehicle", f"{name} confirms: {words}")
                 self._recorder.writer.describe(VEHICLE, self._confirmed)
@@ -147,6 +149,10 @@ class BenchConductor:
             where="set_vehicle",
             fix='give the bench file a panel: [devices.panel] with kind = "rcs-panel"',
         )
+
+    def _take_friction(self, vehicle: VehicleAndRoad) -> None:
+        sides = {"left": vehicle.friction_left, "right": vehicle.friction_right}
+        self._friction |= {side: friction for side, friction in sides.items() if friction is not None}
 
     def release_vehicle(self) -> None:
         """Let the dynos simulate the vehicle."""
@@ -288,6 +294,7 @@ class BenchConductor:
                 gear_ratio=self._gear_ratio(),
                 wheel_orders=tuple(vehicle.wheel_orders),
                 rolling_radius_m=vehicle.wheel_radius_m * (1.0 - self._slip),
+                friction=min(self._friction.values(), default=None),
             )
         )
         self._store_segment()

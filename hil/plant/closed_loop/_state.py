@@ -18,6 +18,7 @@ from hil.plant.closed_loop import tick as T
 
 Array = npt.NDArray[np.float64]
 _ROLLING = P.place("running_resistance", "rolling_nm")
+_PEAK, _ROAD = P.place("tyre_friction", "peak_nm"), P.place("tyre_friction", "road_friction")
 _AERO = P.place("running_resistance", "aero_nms2_rad2")
 
 # What each sensor of a tick measures, and its share of it: each side's shaft has half of the torque.
@@ -59,6 +60,11 @@ class State:
         self.drives[:, D.MODE] = D.FREE
 
     @property
+    def has_friction(self) -> bool:
+        """Whether the tyres hold no more than the road's friction allows."""
+        return bool(self.vector[_PEAK] > 0.0)
+
+    @property
     def vehicle(self) -> tuple[float, float, float]:
         """Inertia (kg m²), rolling (N m) and aerodynamic resistance (N m s²/rad²) of the vehicle model."""
         p = self.vector
@@ -73,8 +79,13 @@ class State:
         slip: float | None = None,
         wheel_radius_m: float | None = None,
         initial_speed_m_s: float | None = None,
+        friction_left: float | None = None,
+        friction_right: float | None = None,
     ) -> None:
-        """Change what the drives' vehicle model is set to; None leaves a value as it is."""
+        """Change what the drives' vehicle model is set to; None leaves a value as it is.
+
+        Friction is a share of what the tyres hold on a dry road; sides that are lumped have their mean.
+        """
         for array, index, value in (
             (self.vector, P.VEHICLE_INERTIA, inertia_kg_m2),
             (self.vector, _ROLLING, rolling_nm),
@@ -82,9 +93,13 @@ class State:
             (self.scalars, T.SLIP, slip),
             (self.scalars, T.RADIUS, wheel_radius_m),
             (self.scalars, T.INITIAL_SPEED, initial_speed_m_s),
+            (self.vector, S.FRICTION_LEFT, friction_left),
+            (self.vector, S.FRICTION_RIGHT, friction_right),
         ):
             if value is not None:
                 array[index] = value
+        if len(self.form) == len(S.LUMPED) and (friction_left, friction_right) != (None, None):
+            self.vector[_ROAD] = 0.5 * (self.vector[S.FRICTION_LEFT] + self.vector[S.FRICTION_RIGHT])
 
 
 def state_at_rest(model: Model, wheel_radius_m: float, longest_step_s: float = LONGEST_STEP_S) -> State:
@@ -97,6 +112,8 @@ def state_at_rest(model: Model, wheel_radius_m: float, longest_step_s: float = L
     refuse_too_stiff(model, longest_step_s)
     vector = P.pack(model)
     form = S.form_of(model)
+    if form is S.LUMPED:  # both sides are on the model's road
+        vector[[S.FRICTION_LEFT, S.FRICTION_RIGHT]] = vector[_ROAD] or 1.0
     scalars = np.zeros(T.SCALARS)
     scalars[T.RADIUS] = wheel_radius_m
     scalars[T.LONGEST_STEP] = longest_step_s

@@ -49,10 +49,13 @@ def feedforward(b, a, z, reference):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def wheel_speed_reference(k, s, reference, estimate, v_hat, hold):  # type: ignore[no-untyped-def]
-    """ω_l* in rad/s: y integrates the driving torque's error, (1) gives V*, (2) divides by r."""
+def wheel_speed_reference(k, s, reference, estimate, v_hat, hold, factor):  # type: ignore[no-untyped-def]
+    """ω_l* in rad/s: y integrates the driving torque's error, (1) gives V*, (2) divides by r.
+
+    `factor` is of K_i(DFC).
+    """
     if not hold:
-        y = s[M.SLIP] + k[M.K_I_DFC] * (reference - estimate) * k[M.SAMPLE_TIME]
+        y = s[M.SLIP] + factor * k[M.K_I_DFC] * (reference - estimate) * k[M.SAMPLE_TIME]
         s[M.SLIP] = min(max(y, -k[M.SLIP_LIMIT]), k[M.SLIP_LIMIT])
     base = v_hat if v_hat >= k[M.SIGMA] else k[M.SIGMA]
     return (v_hat + s[M.SLIP] * base) / k[M.RADIUS]

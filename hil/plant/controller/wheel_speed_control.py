@@ -56,11 +56,15 @@ class WheelSpeedControl:
 
 
 @compiled
-def motor_torque(b, a, z, k, s, wheel_speed_reference, w_m, hold):  # type: ignore[no-untyped-def]
-    """T_m(WSC)* in N m: filter (17), PI (4)(5), lead (6)(7) or notch (8). `hold` freezes the integrator."""
+def motor_torque(b, a, z, k, s, wheel_speed_reference, w_m, hold, factor):  # type: ignore[no-untyped-def]
+    """T_m(WSC)* in N m: filter (17), PI (4)(5), lead (6)(7) or notch (8).
+
+    `hold` freezes the integrator, `factor` is of both gains.
+    """
     reference = step(b[M.SPEED_FILTER], a[M.SPEED_FILTER], z[M.SPEED_FILTER], wheel_speed_reference)
     error = reference - w_m
+    s[M.SPEED_ERROR] = error
     if not hold:
-        s[M.INTEGRATOR] += k[M.K_I] * error * k[M.SAMPLE_TIME]
-    pi = k[M.K_P] * error + s[M.INTEGRATOR]
+        s[M.INTEGRATOR] += factor * k[M.K_I] * error * k[M.SAMPLE_TIME]
+    pi = factor * k[M.K_P] * error + s[M.INTEGRATOR]
     return step(b[M.STABILIZER], a[M.STABILIZER], z[M.STABILIZER], pi)

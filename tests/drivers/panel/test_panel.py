@@ -68,6 +68,18 @@ def test_what_was_written_is_what_reads_back() -> None:
     line.close()
 
 
+def test_friction_has_no_unit() -> None:
+    device, line = panel(
+        (b"\x02 EMUL K0 0.05\x03", b"\x02 EMUL 0\x03"),
+        (b"\x02 AMUL K0\x03", b"\x02 AMUL 0 0.05\x03"),
+        (b"\x02 EMUR K0 1\x03", b"\x02 EMUR 0\x03"),
+        (b"\x02 AMUR K0\x03", b"\x02 AMUR 0 1\x03"),
+    )
+    told = device.set_vehicle(VehicleAndRoad(friction_left=0.05, friction_right=1.0))
+    assert told == {"friction left": "0.05", "friction right": "1"}
+    line.close()
+
+
 def test_another_value_is_no_confirmation() -> None:
     device, line = panel(MASS, (b"\x02 AMAS K0\x03", b"\x02 AMAS 0 1400\x03"))
     with pytest.raises(BenchError, match="vehicle mass reads back as 1400 kg, 1500 was written"):

@@ -10,8 +10,9 @@ import pytest
 
 import test_plans
 from hil.core.controller import load_controller
+from hil.core.controller.shaping import RequestLimits, Schedule, SlipWithdrawal
 from hil.core.errors import BadInputError
-from hil.core.model import load_model
+from hil.core.model import EffectUse, load_model
 from hil.core.recording import Recording, read_recording
 from hil.engine import RunRequest, run_plan
 from hil.engine.bench.bench_file import bench_from_dict
@@ -90,3 +91,22 @@ def test_it_begins_at_its_speed() -> None:
 def test_only_whole_milliseconds_pass(step_s: float) -> None:
     with pytest.raises(BadInputError, match="whole number of milliseconds"):
         Axle(MODEL).step(step_s)
+
+
+def test_what_goes_beyond_fig_3_runs_in_a_unit_step_by_step() -> None:
+    crossing = load_controller(CONTROLLER.with_name("play_crossing.toml"))
+    tables = {
+        "request": RequestLimits(rise_nm_s=20_000.0, fall_nm_s=30_000.0),
+        "slip": SlipWithdrawal(allowed=0.3),
+        "schedule": Schedule(speed_m_s=(0.0, 10.0), wsc_factor=(1.0, 0.8)),
+    }
+    model = MODEL.with_effects(*MODEL.effects, EffectUse("backlash", {"half_gap_rad": 0.02}))
+    asked = np.repeat([-150.0, 300.0], [150, 150])
+    found, once, lead = (
+        Axle(model, controller, initial_speed_m_s=8.0)
+        for controller in (*2 * (crossing.model_copy(update=tables),), load_controller(CONTROLLER))
+    )
+    rows, whole = stepped(found, asked), once.play(asked)
+    for name, values in whole.items():
+        np.testing.assert_array_equal(rows[name], values, err_msg=name)
+    assert np.max(np.abs(whole["shaft_torque_nm"] - lead.play(asked)["shaft_torque_nm"])) > 50.0

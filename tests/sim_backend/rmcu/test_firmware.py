@@ -9,11 +9,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from drivers import parameters_of
 from hil.core.can.dbc import read_dbc
 from hil.core.can.frames import crc8
+from hil.core.controller import load_controller
 from hil.plant.controller.driving_force_observer import DrivingForceObserver
 from hil.plant.controller.filters import settle, step, tustin
-from hil.plant.controller.memory import OBSERVER_SPEED, OBSERVER_TORQUE, Memory
+from hil.plant.controller.memory import OBSERVER_SPEED, OBSERVER_TORQUE, SHAFT_STIFFNESS, Memory
+from hil.plant.controller.parameters import OPTIONAL
 from hil.plant.controller.wheel_speed_control import Notch, PhaseLead
 from sim_backend.rmcu import NEEDED, REQUEST_TIMEOUT_S, RmcuNode
 
@@ -165,3 +168,23 @@ class TestRequests:
         node.vehicle_speed_is_fresh(0.0)
         node.receive(REQUEST.id, request(0, mode=2), 0.0)
         assert (node.mode, node.code >> 4 & 15) == (3, 5)
+
+
+def test_what_is_optional_counts_for_one_apply():
+    """A controller that lacks a table switches it off, also for hosts that do not know of it."""
+    node = RmcuNode(DBC, lambda frame_id, data: None)
+    write, index = DBC.layouts["RMCU_ParameterWrite"], DBC.texts["RMCU_ParameterWrite", "Index"]
+    library = Path(__file__).parents[3] / "test_plans/library/controllers"
+    crossing = parameters_of(load_controller(library / "play_crossing.toml"))
+    lead = parameters_of(load_controller(library / "phase_stabilization.toml"))
+    assert set(OPTIONAL) < set(index)
+    assert not set(OPTIONAL) & set(lead)
+    found = []
+    for parameters in (crossing, lead, crossing):
+        frames = [
+            write.encode(Command=1, Index=index[name], Value=value) for name, value in parameters.items()
+        ]
+        for frame in (*frames, write.encode(Command=2, Index=0, Value=0.0)):
+            node.receive(write.id, int(frame[0]), 0.0)
+        found.append(node.memory.gains[SHAFT_STIFFNESS])
+    assert found == [6089.0, 0.0, 6089.0]

@@ -74,6 +74,13 @@ def test_a_sensor_that_contradicts_its_neighbours_is_doubted(changed: dict[str, 
     assert doubted in objections(axle(**changed), SEGMENT)
 
 
+def test_wheels_need_not_roll_on_a_slippery_road() -> None:
+    sliding = axle(vehicle_speed_m_s=0.5 * SOUND["vehicle_speed_m_s"])
+    assert "vehicle_speed_m_s" in objections(sliding, SEGMENT)
+    assert "vehicle_speed_m_s" in objections(sliding, SEGMENT.model_copy(update={"friction": 1.0}))
+    assert objections(sliding, SEGMENT.model_copy(update={"friction": 0.05})) == {}
+
+
 def test_drag_slip_and_efficiency_are_no_contradiction() -> None:
     torque = SOUND["shaft_torque_left_nm"] * 0.9
     changed = {

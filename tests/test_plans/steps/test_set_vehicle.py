@@ -15,7 +15,31 @@ def test_what_is_given_goes_to_the_conductor_and_the_rest_stays() -> None:
 
 
 @pytest.mark.parametrize(
-    "keys", [{}, {"mass_kg": 0}, {"mass_kg": "1500"}, {"f0_n": -1}, {"slip_percent": 60}]
+    ("keys", "sides"),
+    [
+        ({"friction": 0.1}, (0.1, 0.1)),
+        ({"friction_left": 0.1}, (0.1, None)),
+        ({"friction_left": 0.1, "friction_right": 1.0}, (0.1, 1.0)),
+    ],
+)
+def test_friction_is_that_of_both_sides_or_of_each(keys: dict[str, float], sides: tuple[float, ...]) -> None:
+    conductor = NoteTaker()
+    step_of("set_vehicle", **keys).execute(conductor)
+    left, right = sides
+    assert conductor.calls == [("set_vehicle", VehicleAndRoad(friction_left=left, friction_right=right))]
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        {},
+        {"mass_kg": 0},
+        {"mass_kg": "1500"},
+        {"f0_n": -1},
+        {"slip_percent": 60},
+        {"friction": 0.0},
+        {"friction": 1.0, "friction_left": 0.1},
+    ],
 )
 def test_refused(keys: dict[str, object]) -> None:
     with pytest.raises(BadInputError):

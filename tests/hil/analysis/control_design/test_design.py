@@ -36,6 +36,28 @@ def test_controller_of_the_paper(paper_design: Design) -> None:
     assert controller_from_toml(controller_to_toml(controller), "again") == controller
 
 
+def test_a_half_gap_adds_a_crossing_of_the_models_own_shafts() -> None:
+    chain = Model("three_inertia", THREE)
+    found = design(chain, DesignSpec(half_gap_rad=0.01)).controller
+    assert design(chain, DesignSpec()).controller == found.model_copy(update={"play": None})
+    assert found.play is not None
+    assert found.play.half_gap_rad == 0.01
+    for key, name in (
+        ("shaft_stiffness_nm_rad", "shaft_stiffness"),
+        ("tyre_damping_nms_rad", "tyre_damping"),
+        ("vehicle_inertia_kg_m2", "vehicle_inertia"),
+        ("dead_time_s", "torque_delay"),
+    ):
+        assert getattr(found.play, key) == pytest.approx(THREE[name]), key
+    assert controller_from_toml(controller_to_toml(found), "again") == found
+
+
+def test_of_functions_the_crossing_has_the_nearest_chain(paper_model: Model) -> None:
+    play = design(paper_model, DesignSpec(half_gap_rad=0.01)).controller.play
+    assert play is not None
+    assert play.shaft_stiffness_nm_rad == pytest.approx(THREE["shaft_stiffness"], rel=0.1)
+
+
 def test_phase_beats_gain_at_the_resonance_and_loses_around_thirty_hertz(paper_design: Design) -> None:
     """The paper's statement on Figs. 11 and 12."""
     frequency = paper_design.frequency_hz

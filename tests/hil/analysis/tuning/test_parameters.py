@@ -6,10 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.analysis.tuning import PARAMETERS, Space, values_of, with_values
+from hil.analysis.tuning._parameters import TABLES
 from hil.core.controller import load_controller
+from hil.core.controller.shaping import RequestLimits
+from hil.core.errors import BadInputError
 from test_plans.loading import LIBRARY
 
 PHASE = load_controller(LIBRARY / "controllers" / "phase_stabilization.toml")
+CROSSING = load_controller(LIBRARY / "controllers" / "play_crossing.toml")
 GAIN = load_controller(LIBRARY / "controllers" / "gain_stabilization.toml")
 
 
@@ -18,7 +22,9 @@ def test_the_papers_numbers_are_read():
     assert values["lead_deg"] == pytest.approx(36.0, abs=1e-3)
     assert values["lead_hz"] == pytest.approx(40.0, abs=5e-3)
     assert values["pole_rad_s"] == pytest.approx(0.3, abs=1e-4)
-    assert set(values) == set(PARAMETERS)
+    assert set(values) == set(PARAMETERS) - set(TABLES)
+    limits = RequestLimits(rise_nm_s=1000.0, fall_nm_s=2000.0)
+    assert set(values_of(CROSSING.model_copy(update={"request": limits}))) == set(PARAMETERS)
 
 
 @given(
@@ -35,6 +41,18 @@ def test_the_papers_numbers_are_read():
 def test_what_is_put_in_is_read_back(values):
     found = values_of(with_values(PHASE, values))
     assert {name: found[name] for name in values} == pytest.approx(values, rel=1e-9)
+
+
+def test_numbers_of_a_table_are_put_in_and_read_back():
+    values = {"crossing_speed_rad_s": 1.5, "landing_margin_rad": 0.001}
+    found = with_values(CROSSING, values)
+    assert {name: values_of(found)[name] for name in values} == values
+    assert found.play.model_dump() == CROSSING.play.model_dump() | values
+
+
+def test_a_table_that_is_not_there_is_refused():
+    with pytest.raises(BadInputError, match=r"'phase' has no table \[play\]"):
+        with_values(PHASE, {"crossing_speed_rad_s": 1.5})
 
 
 def test_a_lead_takes_the_place_of_a_notch_and_the_other_way_round():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -21,10 +22,19 @@ from hil.core.errors import BadInputError
 
 LIBRARY = Path(__file__).parents[4] / "test_plans/library/controllers"
 PHASE, GAIN = (load_controller(LIBRARY / f"{name}_stabilization.toml") for name in ("phase", "gain"))
+CROSSING = load_controller(LIBRARY / "play_crossing.toml")
+TABLES = {
+    **CROSSING.model_dump(exclude_none=True),
+    "request": {"rise_nm_s": 5000.0, "fall_nm_s": 9000.0, "zero_band_nm": 30.0, "zero_gradient_nm_s": 900.0},
+    "slip": {"allowed": 0.1},
+    "schedule": {"speed_m_s": [1.0, 10.0], "wsc_factor": [1.0, 0.5], "dfc_factor": [1.0, 2.0]},
+}
 
 
 def changed(key: str, value: Any) -> str:
-    data: dict[str, Any] = tomllib.loads(controller_to_toml(GAIN if "notch" in key else PHASE))
+    plain: dict[str, Any] = tomllib.loads(controller_to_toml(GAIN if "notch" in key else PHASE))
+    data = TABLES if key.partition(".")[0] in ("request", "slip", "play", "schedule") else plain
+    data = copy.deepcopy(data)
     *tables, last = key.split(".")
     table = data
     for name in tables:
@@ -59,11 +69,26 @@ def changed(key: str, value: Any) -> str:
         ("plant.wheel_speed", ([], [1.0] * (LARGEST_ORDER + 2), [1.0]), ([1.0] * (LARGEST_ORDER + 1),)),
         ("plant.shaft_torque", ([], [1.0] * (LARGEST_ORDER + 2), [0.0, 0.0]), ([1.0] * (LARGEST_ORDER + 1),)),
         ("name", ("",), ("x",)),
+        ("request.rise_nm_s", (-1.0, 1.1e7, "1"), (0.0, 1e4)),
+        ("request.zero_band_nm", (-1.0, 1.1e4), (10.0,)),
+        ("slip.allowed", (0.0, -0.1, 1.1), (0.05,)),
+        ("slip.recovery_nm_s", (0.0, -0.1), (500.0,)),
+        ("play.half_gap_rad", (-1e-3, 1.1), (0.0, 0.03)),
+        ("play.crossing_speed_rad_s", (0.0, -1.0, 1.1e3), (1.5,)),
+        ("play.crossing_torque_nm", (0.0, 301.0), (20.0,)),
+        ("play.follow_gradient_nm_s", (0.0,), (3000.0,)),
+        ("play.follow_time_constant_s", (0.0, 1e-6), (0.05,)),
+        ("play.shaft_stiffness_nm_rad", (0.0, -1.0), (5000.0,)),
+        ("play.correction", (-0.1, 1.1), (0.0, 1.0)),
+        ("play.dead_time_s", (-1e-3, 0.065, 0.7), (0.0, 0.064)),
+        ("schedule.speed_m_s", ([], [2.0, 1.0], [1.0, 1.0], [1.0], [-1.0, 2.0]), ([0.0, 30.0],)),
+        ("schedule.wsc_factor", ([1.0], [1.0, -1.0], [1.0, "2"], [1.0] * 7), ([0.0, 2.0],)),
     ],
 )
 def test_values_have_limits(key: str, refused: tuple[Any, ...], taken: tuple[Any, ...]) -> None:
+    named = "schedule" if key.startswith("schedule") else key  # what contradicts another names its table
     for value in refused:
-        with pytest.raises(BadInputError, match=key):
+        with pytest.raises(BadInputError, match=named):
             controller_from_toml(changed(key, value), "here")
     for value in taken:
         controller_from_toml(changed(key, value), "here")
@@ -91,6 +116,19 @@ def test_a_refusal_names_file_line_key_bound_and_reason(written: str, instead: s
     assert refused.value.where == f"mine.toml, line {place + 1}"
     assert instead.partition(" =")[0] in refused.value.what
     assert said in refused.value.what
+
+
+def test_tables_that_are_off_are_not_written() -> None:
+    text = controller_to_toml(PHASE)
+    assert not any(f"[{table}]" in text for table in ("request", "slip", "play", "schedule"))
+    assert controller_from_toml(tomli_w.dumps(TABLES), "here").schedule is not None
+
+
+def test_a_band_around_zero_has_a_gradient() -> None:
+    data = copy.deepcopy(TABLES)
+    data["request"] = {"zero_band_nm": 30.0}
+    with pytest.raises(BadInputError, match="belong together"):
+        controller_from_toml(tomli_w.dumps(data), "here")
 
 
 def test_the_schema_has_the_bounds() -> None:

@@ -10,8 +10,10 @@ import json
 import numpy as np
 import pytest
 
+from hil.core.controller import load_controller, save_controller
+from hil.core.controller.shaping import RequestLimits, Schedule, SlipWithdrawal
 from hil.core.errors import BadInputError, BenchError
-from hil.core.model import load_model, model_from_dict
+from hil.core.model import EffectUse, load_model, model_from_dict
 from hil.core.recording import read_recording, run_of, write_recording
 from hil.engine import RunRequest, load_bench, run_plan
 from hil.engine.bench.bench_tables import NoiseTable
@@ -21,6 +23,7 @@ from hil.engine.prediction._predicted_wire import wire_of
 from hil.engine.prediction.forecast import forecast
 from hil.engine.prediction.prediction import predict
 from test_plans import Outlook, Step, judge, load_plan
+from test_plans.loading import LIBRARY
 from tests.benches_for_tests import SIM, plan, sim_bench
 
 SILENT = NoiseTable(motor_speed_rad_s=0.0, wheel_speed_rad_s=0.0, shaft_torque_nm=0.0)
@@ -135,6 +138,31 @@ def test_a_prediction_is_the_run_without_its_wire(tmp_path, steps):
     assert_equal(outcome, recorded, predicted)
     kinds = [event.kind for event in recorded.events if event.kind in ("segment", "speed", "controller")]
     assert [e.kind for e in predicted.recording.events if e.kind in set(kinds)] == kinds
+
+
+def test_what_goes_beyond_fig_3_acts_on_the_wire_and_in_a_prediction_alike(tmp_path):
+    """All four tables, through play, and then a controller without them."""
+    crossing = load_controller(LIBRARY / "controllers" / "play_crossing.toml")
+    tables = {
+        "request": RequestLimits(rise_nm_s=20_000.0, fall_nm_s=30_000.0),
+        "slip": SlipWithdrawal(allowed=0.2, recovery_nm_s=30_000.0),
+        "schedule": Schedule(speed_m_s=(0.0, 2.0), wsc_factor=(1.0, 0.8), dfc_factor=(1.0, 1.5)),
+    }
+    mine = tmp_path / "mine.toml"
+    save_controller(crossing.model_copy(update=tables), mine)
+    steps = "".join(
+        f"""
+  - set_controller: {{file: {file}}}
+  - hold_speed: {{speed_km_h: 5, duration_s: 0.1}}
+  - stairs: {{segment: {name}, quantity: driving_torque, levels_nm: [0, 200, -100, 200], hold_s: 0.15}}
+"""
+        for name, file in (("with", mine), ("without", "phase_stabilization.toml"))
+    )
+    gap = EffectUse("backlash", {"half_gap_rad": 0.02})
+    outcome, recorded, predicted = both(
+        tmp_path / "run", plan(steps), MODEL.with_effects(*MODEL.effects, gap)
+    )
+    assert_equal(outcome, recorded, predicted)
 
 
 @pytest.mark.parametrize("model", [TWO_INERTIA, RIGID])
