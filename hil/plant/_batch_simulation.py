@@ -25,10 +25,10 @@ from hil.plant._functions import respond_many
 from hil.plant._held_linear import step_matrices
 from hil.plant._kernel import as_tuple
 from hil.plant._motion import acting_of, chain_of, motion_of, relative_speed
-from hil.plant._sensors import COLUMNS, GAIN, record
 from hil.plant._stick_slip import mean_friction
 from hil.plant._torque_path import over_samples
 from hil.plant._tuples import plus_product, plus_row, put
+from hil.plant.sensors import COLUMNS, GAIN, record
 
 Array = npt.NDArray[np.float64]
 

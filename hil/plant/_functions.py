@@ -15,9 +15,9 @@ from hil.core.chain import Chain
 from hil.core.channels import OUTPUTS
 from hil.core.model import TransferFunction
 from hil.plant import _slots as P
-from hil.plant._sensors import record
 from hil.plant._torque_path import shape
 from hil.plant._transfer_function import respond
+from hil.plant.sensors import record
 
 Array = npt.NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from hil.core.model import Model
 from hil.core.runtime.compiled import compiled, inlined
 from hil.plant import _slots as P
 from hil.plant import _states as X
-from hil.plant._table import Table
+from hil.plant._slots import Table
 
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

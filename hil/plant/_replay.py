@@ -15,8 +15,8 @@ from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
 from hil.plant import _kernel, _slots
 from hil.plant._functions import respond_many
-from hil.plant._sensors import measured, sensor_of
 from hil.plant._stability import LONGEST_STEP_S, refuse_divergence, refuse_too_stiff
+from hil.plant.sensors import measured, sensor_of
 from hil.plant.sides import refuse_separate
 
 Array = npt.NDArray[np.float64]

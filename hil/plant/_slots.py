@@ -1,8 +1,12 @@
-"""Where each number of a model stands in the kernels' parameter vector: the chain, then what effects need."""
+"""Where each number of a model stands in the kernels' parameter vector: the chain, then what effects need.
+
+Each is declared once in a table and gets the next place.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,10 +15,45 @@ import numpy.typing as npt
 from hil.core.chain import KINDS, MEANINGS, RIGID, THREE_INERTIA, TWO_INERTIA, Chain
 from hil.core.effects import EFFECTS, Effect
 from hil.core.errors import BadInputError
-from hil.plant._table import Table
 
 if TYPE_CHECKING:
     from hil.core.model import EffectUse, Model
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What stands at one place of a vector."""
+
+    name: str
+    unit: str
+    meaning: str
+
+
+class Table:
+    """Declarations in order. A place is a plain int, which is what the compiler turns into a constant."""
+
+    def __init__(self) -> None:
+        self.entries: list[Entry] = []
+
+    def place(self, name: str, unit: str, meaning: str) -> int:
+        """Declare one more number; its index.
+
+        Raises:
+            ValueError: the name stands in the table.
+        """
+        if name in self.names:
+            raise ValueError(f"'{name}' stands twice")
+        self.entries.append(Entry(name, unit, meaning))
+        return len(self.entries) - 1
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names in order of their places."""
+        return tuple(entry.name for entry in self.entries)
+
+    def __len__(self) -> int:
+        return len(self.entries)
+
 
 __all__ = ["RIGID", "THREE_INERTIA", "TWO_INERTIA", "pack", "place"]
 

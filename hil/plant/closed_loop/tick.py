@@ -9,10 +9,10 @@ from hil.plant import _kernel as K
 from hil.plant import _slots as P
 from hil.plant import _states as X
 from hil.plant import sides as S
-from hil.plant._sensors import DELAY, GAIN, LAG, OFFSET, STEP, between, lagged, reading, samples_late
 from hil.plant.closed_loop import drive as D
 from hil.plant.controller import memory as M
 from hil.plant.controller.control import control
+from hil.plant.sensors import DELAY, GAIN, LAG, OFFSET, STEP, between, lagged, reading, samples_late
 
 # Columns of a row: what the bench's frames tell of one sample, and then what stands in the RMCU's memory
 (

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from hil.core.runtime.compiled import compiled
 from hil.plant.controller import memory as M
-from hil.plant.controller.driving_force_control import feedforward, wheel_speed_reference
-from hil.plant.controller.driving_force_observer import estimate
+from hil.plant.controller.driving_force import estimate, feedforward, wheel_speed_reference
 from hil.plant.controller.filters import settle
 from hil.plant.controller.gain_schedule import factor
 from hil.plant.controller.play_crossing import cross, expected, lie_on

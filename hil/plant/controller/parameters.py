@@ -6,8 +6,7 @@ import math
 from collections.abc import Mapping
 
 from hil.core.controller.bounds import LARGEST_TORQUE_NM, MOST_SCHEDULE_POINTS, SAMPLE_TIMES_S
-from hil.plant.controller.driving_force_control import DrivingForceControl
-from hil.plant.controller.driving_force_observer import DrivingForceObserver
+from hil.plant.controller.driving_force import DrivingForceControl, DrivingForceObserver
 from hil.plant.controller.gain_schedule import GainSchedule
 from hil.plant.controller.memory import GEAR_RATIO, SAMPLE_TIME, TORQUE_LIMIT, Memory
 from hil.plant.controller.play_crossing import PlayCrossing

@@ -22,8 +22,7 @@ from hil.execution.run_execution import RunningRun
 from hil.service.agents.remote_bench import RemoteBench
 from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._benches import known
-from hil.service.api._from_store import from_store
-from hil.service.api._left_files import disposition_of, headers_of, left_file, media_of
+from hil.service.api._left_files import disposition_of, from_store, headers_of, left_file, media_of
 from hil.service.api._problems import RefusedError, missing
 from hil.service.service import Service
 from hil.service.store import NewRun

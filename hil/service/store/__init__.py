@@ -2,11 +2,10 @@
 
 from hil.service.store._agents import AgentStore, RegisteredBench
 from hil.service.store._audit import AuditCheck, AuditHead, LogStore
-from hil.service.store._benches import BenchStore
+from hil.service.store._benches import BenchStore, LeaseStore
 from hil.service.store._books import asked_apart, in_turns
 from hil.service.store._files import FileStore, KeptFile
 from hil.service.store._given import GivenStore, GivenText
-from hil.service.store._leases import LeaseStore
 from hil.service.store._opening import open_database
 from hil.service.store._people import SESSION_S, TokenStore
 from hil.service.store._presence import DatabaseAwayError, Presence

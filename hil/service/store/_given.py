@@ -12,8 +12,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from hil.api_schemas.upload import GivenKind
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now
-from hil.service.store._tables import GivenRow
-from hil.service.store._upsert import put
+from hil.service.store._tables import GivenRow, put
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,7 @@ from sqlalchemy.orm import sessionmaker
 from hil.service.store._books import asked_apart
 from hil.service.store._files import KeptFile
 from hil.service.store._opening import now
-from hil.service.store._tables import NumberRow, ResultFileRow, ResultRow
-from hil.service.store._upsert import put
+from hil.service.store._tables import NumberRow, ResultFileRow, ResultRow, put
 
 ResultKind = Literal["study", "campaign"]
 

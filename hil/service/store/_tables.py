@@ -1,11 +1,17 @@
-"""The tables of the store. A change here needs a migration beside it; a test compares the two."""
+"""The tables of the store, and rows that are put in or change what is there, in one statement.
+
+A change of a table needs a migration beside it; a test compares the two. One statement: so that of two who try
+one does.
+"""
 
 from __future__ import annotations
 
 import datetime
+from typing import Any
 
-from sqlalchemy import BigInteger, DateTime, Double, Index, String, Text
-from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+from sqlalchemy import BigInteger, ColumnElement, DateTime, Double, Index, String, Text
+from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.orm import DeclarativeBase, Mapped, Session, mapped_column
 
 _MOMENT = DateTime(timezone=True)
 
@@ -213,3 +219,13 @@ class AuditRow(Base):
     target: Mapped[str] = mapped_column(String(200))
     detail: Mapped[str] = mapped_column(Text)
     chain: Mapped[str] = mapped_column(String(64), server_default="")
+
+
+def put(session: Session, table: type[Base], row: dict[str, Any], *, where: ColumnElement[bool]) -> bool:
+    """Insert a row, or change that of the same key if it is as wanted; whether either was done."""
+    insert = postgresql.insert if session.get_bind().dialect.name == "postgresql" else sqlite.insert
+    keys = [column.name for column in table.__table__.primary_key]
+    statement = insert(table).values(row)
+    changed = {name: statement.excluded[name] for name in row if name not in keys}
+    statement = statement.on_conflict_do_update(index_elements=keys, set_=changed, where=where)
+    return session.execute(statement.returning(table.__table__.c[keys[0]])).first() is not None

@@ -6,8 +6,8 @@ import pytest
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from hil.plant import bench_sensor, ideal_sensors, pack, simulate, simulate_many
-from hil.plant._sensors import COLUMNS, DELAY, GAIN, LAG, record, sensor_of
 from hil.plant.closed_loop.tick import PAST, _sense
+from hil.plant.sensors import COLUMNS, DELAY, GAIN, LAG, record, sensor_of
 from sim_backend.bench import SimulatedBench, SimulationSettings
 from tests.benches_for_tests import SIM
 

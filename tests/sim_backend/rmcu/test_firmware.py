@@ -13,7 +13,7 @@ from drivers import parameters_of
 from hil.core.can.dbc import read_dbc
 from hil.core.can.frames import crc8
 from hil.core.controller import load_controller
-from hil.plant.controller.driving_force_observer import DrivingForceObserver
+from hil.plant.controller.driving_force import DrivingForceObserver
 from hil.plant.controller.filters import settle, step, tustin
 from hil.plant.controller.memory import OBSERVER_SPEED, OBSERVER_TORQUE, SHAFT_STIFFNESS, Memory
 from hil.plant.controller.parameters import OPTIONAL
