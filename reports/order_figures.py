@@ -161,7 +161,7 @@ def _stretches(recording: Recording, segment: Segment) -> list[_Stretch]:
 
 
 def _spread(stretches: list[_Stretch]) -> list[_Stretch]:
-    """As many as can be told apart, evenly over the speeds."""
+    """As many as can be distinguished, evenly over the speeds."""
     ordered = sorted(stretches, key=lambda one: one.mean_rad_s)
     if len(ordered) <= _MOST_SPECTRA:
         return ordered

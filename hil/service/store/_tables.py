@@ -1,7 +1,7 @@
 """The tables of the store, and rows that are put in or change what is there, in one statement.
 
-A change of a table needs a migration beside it; a test compares the two. One statement: so that of two who try
-one does.
+A change of a table needs a migration beside it; a test compares the two. One statement lets one of two who
+try at once succeed.
 """
 
 from __future__ import annotations
