@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
-from xml.etree.ElementTree import SubElement
+from xml.etree.ElementTree import Element, SubElement
 
-from pythonfmu import Fmi2Causality, Fmi2Initial, Fmi2Slave, Fmi2Variability, Real
+from pythonfmu import DefaultExperiment, Fmi2Causality, Fmi2Initial, Fmi2Slave, Fmi2Variability, Real
 
 try:
     from hil.core.controller import load_controller
@@ -18,10 +18,21 @@ except ImportError as error:
     ) from error
 
 
+#: SI exponents by unit (FMI 2.0.4, 2.2.2).
+_UNITS = {
+    "N.m": {"kg": "1", "m": "2", "s": "-2"},
+    "rad/s": {"rad": "1", "s": "-1"},
+    "m/s": {"m": "1", "s": "-1"},
+    "m": {"m": "1"},
+}
+_ENDINGS = (("_nm", "N.m"), ("_rad_s", "rad/s"), ("_m_s", "m/s"), ("_m", "m"))
+
+
 class EAxle(Fmi2Slave):  # type: ignore[misc]
     """An electric axle in its vehicle, with its controller if it was exported with one."""
 
     description = "Electric axle; needs Python with the package eaxle-hil"
+    default_experiment = DefaultExperiment(start_time=0.0, stop_time=10.0, step_size=0.001)
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -47,8 +58,9 @@ class EAxle(Fmi2Slave):  # type: ignore[misc]
             self.register_variable(Real(name, causality=Fmi2Causality.output, description=f"{about}, {unit}"))
 
     def to_xml(self, model_options: Any = None) -> Any:
-        """As FMI 2 wants it: the outputs are known from the beginning (pythonfmu leaves that out)."""
+        """As FMI 2 wants it: units, and outputs known from the beginning (pythonfmu leaves both out)."""
         root = super().to_xml(model_options or {})
+        _add_units(root)
         structure = root.find("ModelStructure")
         known = SubElement(structure, "InitialUnknowns")
         for output in structure.find("Outputs"):
@@ -77,3 +89,15 @@ class EAxle(Fmi2Slave):  # type: ignore[misc]
         values = axle.outputs()
         for name in self._shown:
             setattr(self, name, values[name])
+
+
+def _add_units(root: Element) -> None:
+    """Give each variable its unit, and define the units between the kind of the model and what follows it."""
+    units = Element("UnitDefinitions")
+    for name, exponents in _UNITS.items():
+        SubElement(SubElement(units, "Unit", name=name), "BaseUnit", exponents)
+    root.insert(1, units)
+    for variable in root.iterfind("ModelVariables/ScalarVariable"):
+        name = variable.attrib["name"]
+        unit = next(unit for ending, unit in _ENDINGS if name.endswith(ending))
+        variable[0].set("unit", unit)

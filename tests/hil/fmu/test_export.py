@@ -8,6 +8,7 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -45,6 +46,12 @@ def test_a_unit_holds_what_it_needs(tmp_path: Path, capsys) -> None:
         description = unit.read("modelDescription.xml").decode()
     assert {"resources/model.toml", "resources/controller.toml", "binaries/linux64/EAxle.so"} <= set(names)
     assert 'fmiVersion="2.0"' in description
+    assert 'stopTime="10.0" stepSize="0.001"' in description
+    root = ElementTree.fromstring(description)
+    defined = {unit.attrib["name"] for unit in root.iterfind("UnitDefinitions/Unit")}
+    used = {variable[0].attrib["unit"] for variable in root.iterfind("ModelVariables/ScalarVariable")}
+    assert used == defined
+    assert root.find("ModelVariables/ScalarVariable[@name='shaft_torque_nm']/Real[@unit='N.m']") is not None
     assert "needs Python with the package eaxle-hil" in description
     assert command("export", MODEL, "--out", out) == 2
     assert [path.name for path in tmp_path.iterdir()] == ["axle.fmu"]
