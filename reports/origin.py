@@ -6,6 +6,7 @@ import datetime
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from hil.core.files import sha256_of
 from hil.core.runtime.versions import versions
@@ -25,11 +26,12 @@ class Source:
 
 @dataclass(frozen=True)
 class Origin:
-    """Moment, software and files."""
+    """Moment, software, files, and how files of other tools were read: their names, a sentence each."""
 
     made_at: datetime.datetime
     versions: Mapping[str, str]
     sources: tuple[Source, ...]
+    reading: tuple[tuple[str, str], ...] = ()
 
     @property
     def mark(self) -> str:
@@ -49,13 +51,17 @@ class Origin:
         software = tuple((name, version) for name, version in self.versions.items() if version)
         tables = (
             Table(("file", "used as", "size", "SHA-256"), files, 2, 3),
+            *((Table(("file", "as read"), self.reading, numbers_from=9),) if self.reading else ()),
             Table(("software", "version"), software, numbers_from=9),
         )
         return Part("provenance", "Provenance", f"Made at {self.made_at:%Y-%m-%d %H:%M:%S} UTC.", tables)
 
 
-def origin_of(files: Mapping[str, list[Path]]) -> Origin:
+def origin_of(files: Mapping[str, list[Path]], read: Mapping[str, Mapping[str, Any]] | None = None) -> Origin:
     """The origin of what is made now from files, by what they are used as ('model', 'recording', …).
+
+    Args:
+        read: by file, `notes` on how it was read.
 
     Raises:
         BadInputError: a file cannot be read.
@@ -66,4 +72,5 @@ def origin_of(files: Mapping[str, list[Path]]) -> Origin:
         for role, paths in files.items()
         for path in paths
     )
-    return Origin(now, versions(), sources)
+    reading = tuple((Path(file).name, note) for file, of in (read or {}).items() for note in of["notes"])
+    return Origin(now, versions(), sources, reading)

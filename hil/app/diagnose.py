@@ -55,7 +55,7 @@ def diagnose_recordings(request: DiagnoseRequest, feedback: Feedback = LOGGED) -
                 INTERRUPTS.answered()
             show("writing the report")
             origin = origin_of(
-                {"model": [request.model], "recording": request.recordings, "held out": holdout}
+                {"model": [request.model], "recording": request.recordings, "held out": holdout}, reading
             )
             files = output_files(found, request.model.name, origin, reading)
         place.write(files, inputs)

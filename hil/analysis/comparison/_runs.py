@@ -53,9 +53,11 @@ def refuse_other_plans(runs: Sequence[ComparedRun]) -> None:
         other = _parts(run.recording)
         different = [part for part in _PARTS if other[part] != first[part]]
         if different:
+            own, of_first = run.result.plan, runs[0].result.plan
+            names = f"'{own}', not '{of_first}': " if own != of_first else f"another version of '{own}': "
             raise BadInputError(
-                f"ran a different plan from {runs[0].recording.source}: "
-                f"'{run.result.plan}', not '{runs[0].result.plan}' ({' and '.join(different)} differ)",
+                f"ran a different plan from {runs[0].recording.source}, {names}"
+                f"{' and '.join(different)} differ",
                 where=str(run.recording.source),
                 fix="compare runs of one plan",
             )

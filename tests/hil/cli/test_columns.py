@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 from pathlib import Path
 from typing import Any
@@ -93,6 +94,9 @@ def test_identify_and_diagnose_take_the_same_map(folder: Path, capsys) -> None:
     assert json.loads((folder / "id/identification.json").read_text()) == found
     diagnosed = printed_json(capsys, "diagnose", "--model", str(model()), "log.txt", *options, "--out", "why")
     assert diagnosed["read"] == found["read"]
+    sentence = "'motor_speed_rad_s' is column 'n_EM', converted from rpm to rad/s, sign -1"
+    for report in ("id/report.html", "why/report.html"):
+        assert sentence in html.unescape((folder / report).read_text())
 
 
 def test_a_map_that_does_not_fit_is_one_message_and_leaves_nothing(folder: Path, capsys) -> None:
