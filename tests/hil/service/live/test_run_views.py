@@ -48,7 +48,7 @@ def test_a_view_has_all_of_a_run_but_its_samples(there: Served) -> None:
     assert ("arm", "drives enabled") in [(mark["name"], mark["text"]) for mark in view["marks"]]
     assert view["criteria"][0]["id"] == "s.peak_shaft_torque"
     assert any(line["channel"] == TORQUE and line["above"] for line in view["limits"])
-    assert set(view["evidence"]["files"]) >= {"recording", "html"}
+    assert set(view["evidence"]["files"]) >= {"report.pdf", "junit.xml"}
     assert len(view["evidence"]["samples_sha256"]) == 64
 
 
