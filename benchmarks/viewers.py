@@ -42,6 +42,7 @@ MOST_TRIES = 3  # a machine that stood still trips the RMCU, as it should
 SECONDS = 30
 _WATCHED_FROM, _WATCHED_S = 0.2, 20.0  # share of the run, and for how long from there
 NICE = 10
+_LONGEST_LINE = 1 << 20  # the first has half a minute of twelve channels
 _RESTS_S = 0.5  # between two requests: then none was due
 PLAN = f"""
 name: watched
@@ -182,7 +183,7 @@ async def _watch(url: str, counts: list[int], over: threading.Event) -> None:
 
 async def _view(url: str, counts: list[int], number: int) -> None:
     where = urlsplit(url)
-    reader, writer = await asyncio.open_connection(where.hostname, where.port)
+    reader, writer = await asyncio.open_connection(where.hostname, where.port, limit=_LONGEST_LINE)
     names = [name for name in CHANNELS if name != TIME]
     chosen = [("channel", names[(number + at) % len(names)]) for at in range(WATCHED_CHANNELS)]
     path = f"/api/v1/benches/bench/live?{urlencode(chosen)}"
