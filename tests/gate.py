@@ -30,6 +30,7 @@ PINNED = {
     "hil/cli/test_full_disk.py::fills_up": "a full disk costs no evidence and leaves a safe bench",
     "hil/engine/run/test_wall_clock.py::compiled_or_loaded": "a bench in real time waits for no compiler",
     "hil/service/test_page.py::test_a_plan_is_foreseen": "a run by the page, from forecast to report",
+    "hil/service/frontend/test_app.py::test_a_plan_is_foreseen": "the same by the page that is built",
     "hil/service/test_serve.py::killed_service": "a killed service loses nothing and runs nothing twice",
     "hil/service/test_stop_under_attack.py::torque_goes[half_open]": "a stop is answered under attack",
     "hil/service/test_access.py::each_role": "who may do what, over every route of the API",

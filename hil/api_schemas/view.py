@@ -88,6 +88,12 @@ class RunSpectrum(_Data):
     band_energy: float = Field(description="8 to 20 Hz, in the channel's unit squared")
 
 
+class LayoutData(_Data):
+    """Plots as the page writes them in its addresses; '' for the usual ones."""
+
+    text: str = Field("", max_length=2000, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")
+
+
 class RunSamples(_Data):
     """Samples of channels at the same moments, for one over another; every `every`-th of the stretch."""
 

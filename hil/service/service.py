@@ -46,6 +46,7 @@ from hil.service.store import (
     DatabaseAwayError,
     FileStore,
     GivenStore,
+    LayoutStore,
     LeaseStore,
     LogStore,
     Presence,
@@ -102,6 +103,7 @@ class Service:
         self._own, self._folder = benches, folder
         self.database = Presence(engine)
         self.runs, self.run_list, self.leases = RunStore(engine), RunList(engine), LeaseStore(engine)
+        self.layouts = LayoutStore(engine)
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
         given = GivenStore(engine)
         models = Uploads(given, "model", folder / "given/models", ".toml")

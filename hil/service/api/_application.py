@@ -16,6 +16,7 @@ from hil.service.api import (
     _comparisons,
     _design,
     _health,
+    _layouts,
     _live,
     _page,
     _people,
@@ -46,6 +47,7 @@ _PARTS = (
     _design,
     _studies,
     _campaigns,
+    _layouts,
     _people,
 )
 

@@ -6,7 +6,6 @@ import asyncio
 import json
 import time
 from collections.abc import AsyncIterator, Sequence
-from functools import partial
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
@@ -18,7 +17,7 @@ from hil.core.result import CriterionResult
 from hil.service.api._access import TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError
-from hil.service.live.live import BUCKET_S, Buckets, Spectrum, Stretch
+from hil.service.live.live import BUCKET_S, Spectrum, Stretch
 from hil.service.live.live_hub import LiveView
 from hil.service.service import Service
 from hil.service.store import in_turns
@@ -117,7 +116,7 @@ class _Watching:
             self._next_bucket = max(0, buckets.shown - round(_SHOWN_S / BUCKET_S))
         first, self._next_bucket = self._next_bucket, max(self._next_bucket, buckets.shown)
         if self._next_bucket > first:
-            news.append(self._samples(run, first, buckets))
+            news.append(self._samples(shown, first))
         if shown.criteria is not self._criteria:
             self._criteria = shown.criteria
             decided = [_criterion(one) for one in shown.criteria]
@@ -127,18 +126,17 @@ class _Watching:
             news.append(self._cache.text("marks", marks, lambda: _marks(shown)))
         return [*news, self._spectrum(shown)]
 
-    def _samples(self, run: int, first: int, buckets: Buckets) -> str:
-        """Viewers choose channels, so each channel is written once, for all who watch it."""
-        stretch = buckets.since(first)
+    def _samples(self, shown: LiveView, first: int) -> str:
+        """The channels chosen; of a stretch that is long, as of who has just come, in wider buckets."""
+        stretch = shown.live.buckets.since(first)
         if stretch is None:
             return ""
-        span = (run, first, self._next_bucket)
-        texts = [
-            self._cache.text(f"samples {name}", span, partial(_channel, stretch, name))
-            for name in self._channels
-            if name in stretch.names
-        ]
-        begin = f'"run":{run},"start_s":{stretch.start_s:.3f},"width_s":{stretch.width_s:.3f}'
+        names = [name for name in self._channels if name in stretch.names]
+        if len(stretch.lowest) == self._next_bucket - stretch.first:
+            texts = [shown.texts.of(name, stretch.first, self._next_bucket) for name in names]
+        else:
+            texts = [_channel(stretch, name) for name in names]
+        begin = f'"run":{shown.run},"start_s":{stretch.start_s:.3f},"width_s":{stretch.width_s:.3f}'
         return f'event: samples\ndata: {{{begin},"channels":{{{",".join(texts)}}}}}\n\n'
 
     def _spectrum(self, shown: LiveView) -> str:

@@ -85,6 +85,15 @@ class Buckets:
         """Number of the first that is not shown yet."""
         return int(self._shown)
 
+    @property
+    def oldest(self) -> int:
+        """Number of the first that is still kept."""
+        return self.next - len(self._done)
+
+    def bucket(self, number: int) -> tuple[Array, Array]:
+        """Lowest and highest values of one that is kept, in the order of `names`."""
+        return self._done[number - self.oldest]
+
     def show(self, passed_s: float) -> bool:
         """Show what was measured in so much time, and whatever is late; says whether there was anything."""
         before, late = self.shown, self.next - round(_BEHIND_S / BUCKET_S)
@@ -93,7 +102,7 @@ class Buckets:
 
     def since(self, number: int) -> Stretch | None:
         """Buckets shown from a number on, joined to `MOST_BUCKETS` at most; None if there is none."""
-        kept = self.next - len(self._done)  # the first that still is
+        kept = self.oldest
         first = max(number, kept)
         count = self.shown - first
         if count <= 0:

@@ -19,6 +19,7 @@ from hil.core.result import CriterionResult
 from hil.engine import RECORDING
 from hil.execution.data_folder import folder_of
 from hil.execution.run_execution import PLAN, RunningRun
+from hil.service.live.bucket_texts import BucketTexts
 from hil.service.live.live import LiveRun
 from test_plans import plan_from_text
 
@@ -51,6 +52,11 @@ class LiveView:
     criteria: tuple[CriterionResult, ...] = ()
     judged_s: float = 0.0
     kept: bool = False  # its overview, for when it is over
+    texts: BucketTexts = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.texts = BucketTexts(self.live.buckets)
+
     looked_s: float = field(default_factory=time.monotonic)
 
 

@@ -52,16 +52,18 @@ class RunViews:
         live = self._live(run)
         if live is not None:
             bench, overview = self._service.benches[run.bench], live.live.overview()
-            lines = [{"channel": name, "above": most, "below": -most} for name, most in bench.limits.items()]
             criteria = [_criterion(one) for one in live.criteria]
             shown = run_view.shown(overview) if overview else _NOTHING | {"channels": bench.units}
-            return shown | {"live": True, "limits": lines, "criteria": criteria}
+            return shown | {"live": True, "limits": self._bench_limits(run.bench), "criteria": criteria}
         if run.state not in OVER:
             units = self._service.benches[run.bench].units if run.bench in self._service.benches else {}
             return _NOTHING | {"live": True, "channels": units}
         overview, _ = await self._kept(run)
         found = await asyncio.to_thread(run_view.shown, overview)
-        return found | {"live": False} | _of_result(await self._result(run), found["marks"])
+        found |= {"live": False} | _of_result(await self._result(run), found["marks"])
+        own = {line["channel"] for line in found["limits"]}
+        found["limits"] += [line for line in self._bench_limits(run.bench) if line["channel"] not in own]
+        return found
 
     async def traces(self, run: RunData, *, close: bool, **asked: Any) -> dict[str, Any]:
         """Fields of `RunTraces`, but the run's number.
@@ -86,6 +88,12 @@ class RunViews:
         if live is not None:
             return await asyncio.to_thread(_READ[task], _begun(live), live.live.path, **asked)
         return await self._service.viewing.ask(task, **await self._files(run, close=True), **asked)
+
+    def _bench_limits(self, name: str) -> list[dict[str, Any]]:
+        """The largest magnitudes that the bench allows now; none of a bench that is not here."""
+        bench = self._service.benches.get(name)
+        limits = bench.limits.items() if bench else ()
+        return [{"channel": channel, "above": most, "below": -most} for channel, most in limits]
 
     def _live(self, run: RunData) -> LiveView | None:
         """The run as it is followed; None if it is over, and what it left is looked at."""

@@ -206,6 +206,17 @@ class LeaseRow(Base):
     until: Mapped[datetime.datetime] = mapped_column(_MOMENT)
 
 
+class LayoutRow(Base):
+    """Plots that somebody has chosen for runs of a plan, as the page writes them."""
+
+    __tablename__ = "layouts"
+
+    person: Mapped[str] = mapped_column(String(100), primary_key=True)
+    plan: Mapped[str] = mapped_column(String(64), primary_key=True)
+    text: Mapped[str] = mapped_column(Text)
+    kept_at: Mapped[datetime.datetime] = mapped_column(_MOMENT)
+
+
 class AuditRow(Base):
     """Something that somebody did; the database itself refuses to change or remove it."""
 

@@ -18,6 +18,7 @@ from hil.core.errors import BadInputError, BenchError
 from hil.service.store import (
     Base,
     BenchStore,
+    LayoutStore,
     LeaseStore,
     LogStore,
     NewRun,
@@ -183,3 +184,23 @@ def _in_memory() -> Engine:
     engine = create_engine("sqlite://")
     Base.metadata.create_all(engine)
     return engine
+
+
+def test_plots_are_kept_by_person_and_plan_and_the_oldest_give_way(
+    engine: Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("hil.service.store._layouts.MOST_OF_ONE", 2)
+    layouts = LayoutStore(engine)
+    layouts.keep("bert", "a", "x")
+    for plan, text_ in (("a", "one"), ("b", "two"), ("a", "three")):
+        layouts.keep("anna", plan, text_)
+    assert [layouts.of("anna", "a"), layouts.of("anna", "b"), layouts.of("bert", "a")] == [
+        "three",
+        "two",
+        "x",
+    ]
+    layouts.keep("anna", "c", "four")
+    assert layouts.of("anna", "c") == "four"
+    assert [layouts.of("anna", plan) for plan in "ab"].count("") == 1
+    layouts.forget("anna", "c")
+    assert (layouts.of("anna", "c"), layouts.of("bert", "a")) == ("", "x")

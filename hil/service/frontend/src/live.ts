@@ -1,4 +1,4 @@
-// A bench as it changes: the service's events (docs/reference/api.md), shared by all parts of a view that watch it.
+// A bench as it changes: the service's events (docs/reference/api.md), shared by all parts of a page that watch it.
 
 import { useEffect, useState } from "preact/hooks";
 import { API } from "./api/client.ts";
@@ -54,31 +54,79 @@ const LOST_MS = 15_000;
 // Whether the service is heard of: what is shown may be old otherwise.
 export const lost = new Store(false);
 
+// Browsers open six connections to a service at most: all parts of a page that watch a bench share one.
+class Watched {
+  readonly live: Live;
+  readonly #takers = new Set<(samples: Samples) => void>();
+  readonly #wanted = new Map<symbol, string[]>();
+  readonly #bench: string;
+  #timer = 0;
+  #asked: string | null = null;
+  #close: () => void = () => {};
+
+  constructor(bench: string) {
+    this.#bench = bench;
+    this.live = {
+      state: new Store<BenchState | null>(null),
+      criteria: new Store<{ run: number; criteria: Criterion[] } | null>(null),
+      marks: new Store<{ run: number; marks: Mark[] } | null>(null),
+      onSamples: (take) => { this.#takers.add(take); return () => { this.#takers.delete(take); }; },
+    };
+  }
+
+  want(part: symbol, channels: string[]): void {
+    this.#wanted.set(part, channels);
+    this.#soon();
+  }
+
+  leave(part: symbol): void {
+    this.#wanted.delete(part);
+    this.#soon();
+  }
+
+  // What several parts want at the same moment is asked for once.
+  #soon(): void {
+    clearTimeout(this.#timer);
+    this.#timer = window.setTimeout(() => this.#ask(), TOGETHER_MS);
+  }
+
+  #ask(): void {
+    if (!this.#wanted.size) {
+      this.#close();
+      watched.delete(this.#bench);
+      return;
+    }
+    const channels = [...new Set([...this.#wanted.values()].flat())].sort().join(",");
+    if (channels === this.#asked) return;
+    this.#close();
+    this.#asked = channels;
+    this.#close = open(this.#bench, channels ? channels.split(",") : [], this.live, (samples) => { for (const take of this.#takers) take(samples); });
+  }
+}
+
+const TOGETHER_MS = 20;
+const watched = new Map<string, Watched>();
+const NO_LIVE = new Watched("").live;
+
 export function useLive(bench: string | null, channels: readonly string[] = []): Live {
-  const [live] = useState(newLive);
+  const [part] = useState(() => Symbol("part"));
   const key = channels.join(",");
+  const found = bench === null ? null : watchedOf(bench);
   useEffect(() => {
-    if (bench === null) return undefined;
-    live.state.value = null;
-    return watch(bench, key ? key.split(",") : [], live);
-  }, [bench, key, live]);
-  return live;
+    if (!found) return undefined;
+    return () => found.leave(part);
+  }, [found, part]);
+  useEffect(() => found?.want(part, key ? key.split(",") : []), [found, part, key]);
+  return found?.live ?? NO_LIVE;
 }
 
-type Inside = Live & { takers: Set<(samples: Samples) => void> };
-
-function newLive(): Inside {
-  const takers = new Set<(samples: Samples) => void>();
-  return {
-    state: new Store<BenchState | null>(null),
-    criteria: new Store<{ run: number; criteria: Criterion[] } | null>(null),
-    marks: new Store<{ run: number; marks: Mark[] } | null>(null),
-    takers,
-    onSamples: (take) => { takers.add(take); return () => { takers.delete(take); }; },
-  };
+function watchedOf(bench: string): Watched {
+  const known = watched.get(bench) ?? new Watched(bench);
+  watched.set(bench, known);
+  return known;
 }
 
-function watch(bench: string, channels: string[], live: Inside): () => void {
+function open(bench: string, channels: string[], live: Live, onSamples: (samples: Samples) => void): () => void {
   const query = new URLSearchParams(channels.map((channel) => ["channel", channel]));
   const events = new EventSource(`${API}/benches/${encodeURIComponent(bench)}/live${channels.length ? `?${query}` : ""}`);
   let heard = Date.now();
@@ -88,7 +136,7 @@ function watch(bench: string, channels: string[], live: Inside): () => void {
     work(JSON.parse((event as MessageEvent<string>).data) as T);
   });
   take<BenchState>("state", (state) => { live.state.value = state; });
-  take<Samples>("samples", (samples) => { for (const taker of live.takers) taker(samples); });
+  take<Samples>("samples", onSamples);
   take<{ run: number; criteria: Criterion[] }>("criteria", (found) => { live.criteria.value = found; });
   take<{ run: number; marks: Mark[] }>("marks", (found) => { live.marks.value = found; });
   take("here", () => {}); // nothing is new

@@ -52,6 +52,13 @@ test("buckets that come after each other keep every lowest and highest value", (
   assert.ok(Math.abs(recent.last - 0.05) < 1e-12);
 });
 
+test("what is sent once more after a pause takes the place of what was there", () => {
+  const recent = new Recent(), channel = (...values: number[]) => ({ a: { lowest: values, highest: values } });
+  recent.add({ run: 1, start_s: 0, width_s: 1, channels: channel(0, 1, 2) });
+  recent.add({ run: 1, start_s: 1, width_s: 1, channels: channel(1, 2, 3) });
+  assert.deepEqual([recent.traces.time, recent.traces.channels["a"]?.lowest], [[0.5, 1.5, 2.5, 3.5], [0, 1, 2, 3]]);
+});
+
 test("only the last minutes are kept, and other channels begin anew", () => {
   const recent = new Recent();
   for (let at = 0; at < 300; at += 1) recent.add({ run: 1, start_s: at, width_s: 1, channels: { a: { lowest: [at], highest: [at] } } });

@@ -36,3 +36,4 @@ export type TokenData = Schemas["TokenData"];
 export type TokenMade = Schemas["TokenMade"];
 export type Agent = Schemas["AgentData"];
 export type KeptApart = Schemas["KeptApart"];
+export type Layout = Schemas["LayoutData"];

@@ -1,8 +1,9 @@
-// What a board of plots shows: kept in the address, so that it can be sent, and per person and plan in this browser.
+// What a board of plots shows: kept in the address, so that it can be sent, and by the service per person and plan.
 
-import { useCallback, useMemo, useState } from "preact/hooks";
+import { useCallback, useEffect, useMemo, useState } from "preact/hooks";
+import { ask, get } from "../api/client.ts";
+import type { Layout } from "../api/types.ts";
 import { setQuery, useQuery } from "../router.ts";
-import { useMe } from "../session.ts";
 import { layoutOf, layoutText, usualLayout, type PlotSpec } from "./layout.ts";
 import { numbersFrom, numbersText, rangeFrom, rangeText, type Shown } from "./range.ts";
 
@@ -21,10 +22,9 @@ export const FOLLOW_S = 30;
 
 export function useBoardState(plan: string, channels: readonly string[], live: boolean): BoardState {
   const [query] = useQuery();
-  const me = useMe();
-  const key = `layout ${me.name} ${plan}`;
+  const [kept, keep] = useKept(plan);
   const [chosen, setChosen] = useState(0);
-  const text = query.get("plots") ?? localStorage.getItem(key);
+  const text = query.get("plots") ?? kept;
   const known = channels.join(",");
   const plots = useMemo(() => (text ? layoutOf(text).map((plot) => ({ ...plot, channels: plot.channels.filter((one) => channels.includes(one)) })) : usualLayout(channels)), [text, known]);
   const time = query.get("t"), marks = query.get("c");
@@ -41,7 +41,7 @@ export function useBoardState(plan: string, channels: readonly string[], live: b
     cursors,
     chosen: Math.min(chosen, Math.max(0, cursors.length - 1)),
     setPlots: (changed) => {
-      localStorage.setItem(key, layoutText(changed));
+      keep(layoutText(changed));
       put("plots", layoutText(changed));
     },
     setShown: (changed) => put("t", changed === "whole" && !live ? null : rangeText(changed)),
@@ -50,8 +50,23 @@ export function useBoardState(plan: string, channels: readonly string[], live: b
       put("c", numbersText(changed));
     },
     reset: () => {
-      localStorage.removeItem(key);
+      keep("");
       put("plots", null);
     },
   };
+}
+
+// The plots that were chosen for runs of a plan; '' for the usual ones, which are shown until the answer is there.
+function useKept(plan: string): [string, (text: string) => void] {
+  const [text, setText] = useState("");
+  const path = `/layouts/${encodeURIComponent(plan)}`;
+  useEffect(() => {
+    const control = new AbortController();
+    get<Layout>(path, control.signal).then((found) => setText(found.text ?? "")).catch(() => {});
+    return () => control.abort();
+  }, [path]);
+  return [text, (changed) => {
+    setText(changed);
+    ask("PUT", path, { text: changed }).catch(() => {}); // the address has them, too
+  }];
 }

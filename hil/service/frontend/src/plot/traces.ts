@@ -40,9 +40,9 @@ export class Recent {
 
   add(samples: Samples): void {
     const names = Object.keys(samples.channels);
-    const before = this.traces, had = Object.keys(before.channels);
-    if (had.length !== names.length || names.some((name) => !(name in before.channels))) this.clear();
-    const { time, channels } = this.traces;
+    const had = this.traces.channels;
+    if (Object.keys(had).length !== names.length || names.some((name) => !(name in had))) this.clear();
+    const { time, channels } = before(this.traces, samples.start_s);
     const count = Math.max(0, ...names.map((name) => samples.channels[name]?.lowest.length ?? 0));
     const all = [...time, ...middles(samples.start_s, samples.width_s, count)];
     const oldest = (all.at(-1) ?? 0) - KEPT_S, gone = all.findIndex((one) => one >= oldest);
@@ -54,6 +54,14 @@ export class Recent {
       }])),
     };
   }
+}
+
+// What lies before a moment: a service that is asked again sends once more what came last.
+function before(traces: Traces, start: number): Traces {
+  const end = traces.time.findLastIndex((one) => one < start) + 1;
+  if (end === traces.time.length) return traces;
+  const cut = ({ lowest, highest }: Trace): Trace => ({ lowest: lowest.slice(0, end), highest: highest.slice(0, end) });
+  return { time: traces.time.slice(0, end), channels: Object.fromEntries(Object.entries(traces.channels).map(([name, trace]) => [name, cut(trace)])) };
 }
 
 // Where a time lies among sorted ones: the nearest.

@@ -58,35 +58,50 @@ function Choose({ runs, onChange }: { runs: number[]; onChange: (runs: number[])
 }
 
 interface Found {
-  pairs: Comparison[]; // of the first run with each other
-  views: RunView[];
+  views: RunView[] | null; // there at once, as their traces are
+  pairs: Comparison[] | null; // of the first run with each other: recordings are read for it
+  error: string;
 }
 
-function useFound(runs: number[]): { found: Found | null; error: string } {
-  const [state, setState] = useState<{ found: Found | null; error: string }>({ found: null, error: "" });
+function useFound(runs: number[]): Found {
+  const [found, setFound] = useState<Found>({ views: null, pairs: null, error: "" });
   useEffect(() => {
     const control = new AbortController();
-    const look = async () => {
+    const [first, ...others] = runs;
+    const look = async <T,>(name: "views" | "pairs", asked: Promise<T>[]) => {
       try {
-        const [first, ...others] = runs;
-        const views = await Promise.all(runs.map((run) => get<RunView>(`/runs/${run}/view`, control.signal)));
-        const pairs = await Promise.all(others.map((other) => get<Comparison>(`/comparisons?first=${first}&other=${other}`, control.signal)));
-        setState({ found: { pairs, views }, error: "" });
+        const all = await Promise.all(asked);
+        setFound((before) => ({ ...before, [name]: all }));
       } catch (error) {
-        if (!control.signal.aborted) setState({ found: null, error: (error as Error).message });
+        if (!control.signal.aborted) setFound((before) => ({ ...before, error: (error as Error).message }));
       }
     };
-    void look();
+    void look("views", runs.map((run) => get<RunView>(`/runs/${run}/view`, control.signal)));
+    void look("pairs", others.map((other) => get<Comparison>(`/comparisons?first=${first}&other=${other}`, control.signal)));
     return () => control.abort();
   }, []);
-  return state;
+  return found;
+}
+
+interface Common {
+  id: string;
+  channels: string[];
+}
+
+// Segments that all runs have, and the channels of all.
+function segmentsOf(views: RunView[]): Common[] {
+  const [first, ...others] = views;
+  if (!first) return [];
+  const channels = Object.keys(first.channels).filter((one) => others.every((view) => one in view.channels));
+  const names = first.marks.filter((mark) => mark.kind === "segment" && mark.end_s !== null).map((mark) => mark.name);
+  return names.filter((name) => views.every((view) => stretchOf(view, name, false) !== null)).map((id) => ({ id, channels }));
 }
 
 function Compared({ runs, query, setQuery }: { runs: number[]; query: URLSearchParams; setQuery: (query: URLSearchParams) => void }): JSX.Element {
-  const { found, error } = useFound(runs);
+  const { views, pairs, error } = useFound(runs);
   if (error) return <p class="bad" role="alert">{error}</p>;
-  if (!found) return <p class="quiet">Comparing …</p>;
-  const segments = found.pairs[0]?.segments ?? [];
+  if (!views) return <p class="quiet">Loading the runs …</p>;
+  const segments = segmentsOf(views);
   const segment = segments.find((one) => one.id === query.get("segment")) ?? segments[0];
   const near = query.get("stretch") !== "whole";
   const put = (name: string, value: string) => {
@@ -95,11 +110,11 @@ function Compared({ runs, query, setQuery }: { runs: number[]; query: URLSearchP
     setQuery(next);
   };
   const channels = (query.get("channels")?.split(",") ?? CHANNELS).filter((one) => segment?.channels.includes(one));
-  const stretches = segment ? found.views.map((view) => stretchOf(view, segment.id, near)).filter((one) => one !== null) : [];
+  const stretches = segment ? views.map((view) => stretchOf(view, segment.id, near)).filter((one) => one !== null) : [];
   return (
     <>
-      {found.pairs.map((pair) => <Lead key={pair.other.id} pair={pair} />)}
-      <Differences pairs={found.pairs} />
+      {pairs ? pairs.map((pair) => <Lead key={pair.other.id} pair={pair} />) : <p class="quiet">Comparing criteria and inputs …</p>}
+      {pairs ? <Differences pairs={pairs} /> : null}
       {segment ? (
         <Section title="Traces from the step" label="traces">
           <div class="row small">
@@ -108,10 +123,10 @@ function Compared({ runs, query, setQuery }: { runs: number[]; query: URLSearchP
             <label>Channel <select value="" onChange={(event) => put("channels", [...channels, event.currentTarget.value].join(","))}><option value="" disabled>add …</option>{segment.channels.filter((one) => !channels.includes(one)).map((one) => <option key={one}>{one}</option>)}</select></label>
             {channels.length ? <button type="button" class="plain" onClick={() => put("channels", channels.slice(0, -1).join(","))}>Leave out the last</button> : null}
           </div>
-          <div class="plots part">{channels.map((channel) => <ComparePlot key={channel} channel={channel} unit={found.views[0]?.channels[channel] ?? ""} stretches={stretches} />)}</div>
+          <div class="plots part">{channels.map((channel) => <ComparePlot key={channel} channel={channel} unit={views[0]?.channels[channel] ?? ""} stretches={stretches} />)}</div>
         </Section>
       ) : null}
-      <ComparedCriteria pairs={found.pairs} />
+      {pairs ? <ComparedCriteria pairs={pairs} /> : null}
     </>
   );
 }

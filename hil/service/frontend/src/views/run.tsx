@@ -83,7 +83,7 @@ function RunActions({ run }: { run: Run }): JSX.Element | null {
   };
   const waits = run.state === "queued" || run.state === "waiting_approval";
   return (
-    <div class="row">
+    <div class="row level">
       {may("operator") && OVER.includes(run.state) ? <button type="button" onClick={() => void again()}>Again</button> : null}
       {may("operator") && waits ? <button type="button" onClick={() => void attempt(() => post(`/runs/${run.id}/abort`))}>Cancel</button> : null}
       {run.state === "waiting_approval" && may("engineer") ? <button type="button" class="main" onClick={() => void attempt(() => post(`/runs/${run.id}/approve`))}>Approve</button> : null}
