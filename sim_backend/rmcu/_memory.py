@@ -19,6 +19,8 @@ INTERNALS = {
     "slip_ref": T.SLIP_INTEGRAL,  # y
     "wsc_integral_nm": T.SPEED_INTEGRAL,
     "observed_torque_nm": T.OBSERVED_FORCE,  # rF̂_d as the observer has it, also where no frame shows it
+    "followed_request_nm": T.FOLLOWED_REQUEST,  # what gradients and slip leave of rF_d*
+    "twist_ref_rad": T.TWIST_REFERENCE,  # φ of the play crossing
     "observer_torque_state_nm": T.OBSERVER_TORQUE,
     "observer_speed_state_nm": T.OBSERVER_SPEED,
     "rmcu_motor_speed_rad_s": T.MOTOR_SPEED,

@@ -48,9 +48,14 @@ class SpeedLoops:
         return some
 
     def margins(self, controller: Controller, number: int) -> Margins:
-        """Of the loop that `controller` closes around model `number`."""
+        """Of the loop that `controller` closes around model `number`; of a schedule, where |S| is largest."""
         loop = self.open_loop(controller, number)
-        return margins(self.frequency_hz, loop, self._origin_poles[number])
+        factors = {1.0} if controller.schedule is None else set(controller.schedule.wsc_factor) - {0.0}
+        found = [
+            margins(self.frequency_hz, factor * loop, self._origin_poles[number])
+            for factor in sorted(factors or {1.0})
+        ]
+        return max(found, key=lambda one: (not one.stable, one.sensitivity_peak))
 
     def open_loop(self, controller: Controller, number: int) -> ComplexArray:
         """F values on `frequency_hz`."""

@@ -44,8 +44,10 @@ from hil.plant.sensors import DELAY, GAIN, LAG, OFFSET, STEP, between, lagged, r
     OBSERVED_FORCE,
     OBSERVER_TORQUE,
     OBSERVER_SPEED,
-) = range(28)
-COLUMNS = 28
+    FOLLOWED_REQUEST,
+    TWIST_REFERENCE,
+) = range(30)
+COLUMNS = 30
 SIGNS = (1.0, -1.0)  # left, right
 SENSORS = 5  # motor speed, wheel left, wheel right, shaft left, shaft right
 SENSOR_GAIN, SENSOR_OFFSET, SENSOR_STEP, SENSOR_DELAY = GAIN, OFFSET, STEP, DELAY
@@ -159,6 +161,8 @@ def tick(  # type: ignore[no-untyped-def]
     row[OBSERVED_FORCE] = states[M.ESTIMATE]
     row[OBSERVER_TORQUE] = z[M.OBSERVER_TORQUE, 0]
     row[OBSERVER_SPEED] = z[M.OBSERVER_SPEED, 0]
+    row[FOLLOWED_REQUEST] = states[M.FOLLOWED]
+    row[TWIST_REFERENCE] = states[M.TWIST]
     torques[k % HISTORY] = torque
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
     late = max(0.0, p[P.TORQUE_DELAY] - whole * dt)

@@ -44,6 +44,7 @@ def _drive(b, a, z, k, s, request, v_hat, w_m, t_m):  # type: ignore[no-untyped-
     # Anti-windup by conditional integration: while the last torque was clipped, both integrators wait.
     hold = s[M.SATURATED] != 0.0
     reference = govern(k, s, request, v_hat, w_m)
+    s[M.FOLLOWED] = reference
     ahead = 0.0
     in_gap = False
     if k[M.SHAFT_STIFFNESS] > 0.0:

@@ -76,10 +76,11 @@ GAINS = DFC_FACTOR + MOST_SCHEDULE_POINTS
     SPEED_ERROR,  # of the wheel speed control, rad/s
     SLOW_ERROR,  # of it, what lasts
     AHEAD,  # of the reference, the axle's twist, rad
-) = range(8, 17)
+    FOLLOWED,  # what is left of the request by gradients and slip, N m
+) = range(8, 18)
 # What is expected of the axle, by sample: the part of ω_m that twist and tyre make (rad/s), T_s (N m)
 NO_LIMIT = 1e12  # of a request, N m
-EXPECTED_SPEED = 17
+EXPECTED_SPEED = 18
 RING = MOST_DEAD_TIME_SAMPLES + 2
 EXPECTED_TORQUE = EXPECTED_SPEED + RING
 STATES = EXPECTED_TORQUE + RING

@@ -7,8 +7,7 @@ from sqlalchemy.orm import sessionmaker
 
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import now
-from hil.service.store._tables import LayoutRow
-from hil.service.store._upsert import put
+from hil.service.store._tables import LayoutRow, put
 
 #: Of one person; the oldest give way.
 MOST_OF_ONE = 200

@@ -12,13 +12,14 @@ from hypothesis import strategies as st
 from drivers import parameters_of
 from hil.core.can.dbc import read_dbc
 from hil.core.can.frames import crc8
+from hil.core.can.symbol_files import read_symbols
 from hil.core.controller import load_controller
 from hil.plant.controller.driving_force import DrivingForceObserver
 from hil.plant.controller.filters import settle, step, tustin
 from hil.plant.controller.memory import OBSERVER_SPEED, OBSERVER_TORQUE, SHAFT_STIFFNESS, Memory
 from hil.plant.controller.parameters import OPTIONAL
 from hil.plant.controller.wheel_speed_control import Notch, PhaseLead
-from sim_backend.rmcu import NEEDED, REQUEST_TIMEOUT_S, RmcuNode
+from sim_backend.rmcu import INTERNALS, NEEDED, REQUEST_TIMEOUT_S, RmcuNode
 
 DBC = read_dbc(Path(__file__).parents[3] / "benches" / "rmcu.dbc", NEEDED)
 REQUEST = DBC.layouts["RMCU_Request"]
@@ -188,3 +189,9 @@ def test_what_is_optional_counts_for_one_apply():
             node.receive(write.id, int(frame[0]), 0.0)
         found.append(node.memory.gains[SHAFT_STIFFNESS])
     assert found == [6089.0, 0.0, 6089.0]
+
+
+def test_every_symbol_of_the_shipped_a2l_stands_for_something_in_its_memory():
+    symbols = read_symbols(Path(__file__).parents[3] / "benches" / "rmcu.a2l")
+    addresses = sorted(symbol.address for symbol in symbols.by_name.values())
+    assert len(set(addresses)) == len(addresses) == len(INTERNALS)

@@ -4,6 +4,7 @@ import pytest
 
 from hil.analysis.control_design import DesignSpec, design
 from hil.analysis.tuning import SpeedLoops, with_values
+from hil.core.controller.shaping import Schedule
 from hil.core.model import EffectUse
 from tests.hil.analysis.tuning.test_parameters import PHASE
 from tests.hil.analysis.tuning.trials import MODEL
@@ -30,3 +31,19 @@ def test_dead_time_of_an_effect_counts():
 
 def test_a_loop_that_is_too_fast_is_unstable():
     assert not SpeedLoops([MODEL], 0.001).margins(with_values(PHASE, {"pole_rad_s": 3.0}), 0).stable
+
+
+def test_of_scheduled_gains_the_worst_counts():
+    loops = SpeedLoops([MODEL], 0.001)
+
+    def scheduled(*factors):
+        speeds = tuple(float(place) for place in range(len(factors)))
+        return PHASE.model_copy(update={"schedule": Schedule(speed_m_s=speeds, wsc_factor=factors)})
+
+    wsc = PHASE.wsc
+    gains = {"proportional_gain": 2 * wsc.proportional_gain, "integral_gain": 2 * wsc.integral_gain}
+    twice = loops.margins(PHASE.model_copy(update={"wsc": wsc.model_copy(update=gains)}), 0)
+    assert loops.margins(scheduled(0.5, 2.0, 1.0), 0) == twice
+    assert twice.sensitivity_peak > loops.margins(PHASE, 0).sensitivity_peak
+    assert loops.margins(scheduled(1.0, 0.0), 0) == loops.margins(PHASE, 0)
+    assert not loops.margins(scheduled(1.0, 20.0, 0.5), 0).stable

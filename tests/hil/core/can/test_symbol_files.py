@@ -106,7 +106,7 @@ def test_a_file_that_is_none_is_told_with_its_line(tmp_path: Path, text: str, su
 
 def test_the_shipped_a2l_can_be_measured_whole() -> None:
     symbols = read_symbols(shipped("rmcu.a2l"))
-    assert len(symbols.by_name) == 10
+    assert len(symbols.by_name) == 12
     assert all(symbols.find(name).kind == "f4" for name in symbols.by_name)
 
 

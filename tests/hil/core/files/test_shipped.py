@@ -15,7 +15,7 @@ from hil.engine.bench.bench_file import shipped
 
 
 def test_every_shipped_model_is_read_by_its_name() -> None:
-    assert shipped_names("model") == ("paper_car_axle", "paper_functions", "three_inertia")
+    assert shipped_names("model") == ("paper_car_axle", "paper_functions", "road_axle", "three_inertia")
     for name in shipped_names("model"):
         assert load_model(Path(name)) == load_model(shipped(f"{name}.toml"))
 
@@ -37,7 +37,7 @@ def test_a_path_stays_as_it_is_and_a_file_comes_before_a_name(tmp_path: Path) ->
 def test_an_unknown_name_is_answered_with_the_known_ones(name: str) -> None:
     with pytest.raises(BadInputError, match="there is no model") as caught:
         shipped_file(name, "model")
-    assert "known: paper_car_axle, paper_functions, three_inertia" in caught.value.fix
+    assert "known: paper_car_axle, paper_functions, road_axle, three_inertia" in caught.value.fix
 
 
 def test_a_bench_file_names_a_shipped_model(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from drivers import parameters_of
 from hil.core.controller import Controller, load_controller
 from hil.core.controller.shaping import RequestLimits, SlipWithdrawal
 from hil.fmu import Axle
+from hil.plant.closed_loop import tick as T
 from hil.plant.controller import Memory, build
 from hil.plant.controller import memory as M
 from hil.plant.controller.request_governor import govern
@@ -96,3 +97,10 @@ def test_wheels_slip_less_on_ice() -> None:
 
     withdrawn = SHIPPED.model_copy(update={"slip": SlipWithdrawal(allowed=0.1)})
     assert slip_of(withdrawn) < 0.8 * slip_of(SHIPPED)
+
+
+def test_what_is_left_of_a_request_stands_in_the_rows() -> None:
+    axle = Axle(slippery_axle(), limited(rise_nm_s=1000.0))
+    axle.play(np.full(150, 100.0))
+    followed = axle._loop.rows[-150:, T.FOLLOWED_REQUEST]
+    assert followed == pytest.approx(np.minimum(np.arange(1, 151), 100.0))
