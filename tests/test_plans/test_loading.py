@@ -208,6 +208,7 @@ def test_a_stimulus_with_odd_numbers_is_read_or_refused(changes: dict[str, float
 
 def test_built_in_plans() -> None:
     assert library_plans() == (
+        "abs_release",
         "acceptance",
         "commissioning",
         "driveability",
