@@ -20,6 +20,7 @@ from typing import Any
 
 from benchmarks.real_data.embir import EMBIR
 from benchmarks.real_data.emps import EMPS
+from benchmarks.real_data.fditools import FDITOOLS
 from benchmarks.real_data.hsm150 import HSM150
 from benchmarks.real_data.lexium62 import LEXIUM62
 from benchmarks.real_data.lorenz import LORENZ
@@ -28,7 +29,7 @@ from hil.core.errors import HilError
 from hil.core.model import Model, save_model
 from hil.core.recording import Recording, write_recording
 
-DATA_SETS = {one.name: one for one in (EMPS, HSM150, LORENZ, LEXIUM62, EMBIR)}
+DATA_SETS = {one.name: one for one in (EMPS, HSM150, LORENZ, LEXIUM62, EMBIR, *FDITOOLS)}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -45,13 +46,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if unknown:
         parser.error(f"no data set {', '.join(unknown)}; there are {', '.join(DATA_SETS)}")
     wanted = [DATA_SETS[name] for name in options.names or DATA_SETS]
-    here = [one for one in wanted if not missing(one, options.data / one.name)]
+    here = [one for one in wanted if not missing(one, one.place(options.data))]
     for one in wanted:
         if one not in here:
-            print(f"{one.name}: not in {options.data / one.name}: {missing(one, options.data / one.name)[0]}")
+            print(f"{one.name}: not in {one.place(options.data)}: {missing(one, one.place(options.data))[0]}")
     try:
         for one in here:
-            _run(one, options.data / one.name)
+            _run(one, one.place(options.data))
     except HilError as error:
         print(error, file=sys.stderr)
         return 2

@@ -47,4 +47,5 @@ EMBIR = DataSet(
     (_FILE,),
     "unknown as a whole: coulomb_friction 0.045 N m leaves 15 of 20 % (own fit)",
     _read,
+    hidden=(),
 )

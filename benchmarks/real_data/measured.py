@@ -34,14 +34,22 @@ class Measured:
 class DataSet:
     """A published data set.
 
-    `files` must be in its directory; `expected` is what its authors, or a fit by another program, found;
-    `read` makes recordings of the directory.
+    `files` must be in its directory (`directory`, or one named as it);
+    `expected` is what its authors, or a fit by another program, found;
+    `read` makes recordings of the directory; `hidden` must be named, `beside` may be.
     """
 
     name: str
     files: tuple[str, ...]
     expected: str
     read: Callable[[Path], Measured]
+    directory: str = ""
+    hidden: tuple[str, ...] = ("coulomb_friction",)
+    beside: tuple[str, ...] = ()
+
+    def place(self, data: Path) -> Path:
+        """Where its files are."""
+        return data / (self.directory or self.name)
 
 
 def one_mass(inertia: float, drag: float) -> Model:

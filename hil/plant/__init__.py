@@ -10,7 +10,7 @@ from hil.plant.sensors import DELAY as SENSOR_DELAY
 from hil.plant.sensors import GAIN as SENSOR_GAIN
 from hil.plant.sensors import OFFSET as SENSOR_OFFSET
 from hil.plant.sensors import STEP as SENSOR_STEP
-from hil.plant.sensors import bench_sensor, sensor_of
+from hil.plant.sensors import bench_sensor, sensor_of, sensor_response
 
 __all__ = [
     "LONGEST_STEP_S",
@@ -34,6 +34,7 @@ __all__ = [
     "refuse_too_stiff",
     "replay",
     "sensor_of",
+    "sensor_response",
     "simulate",
     "simulate_many",
     "start_of",

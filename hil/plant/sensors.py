@@ -143,6 +143,13 @@ def sensor_of(model: Model, channel: str) -> Array:
     return row
 
 
+def sensor_response(sensors: Array, frequency_hz: Array) -> npt.NDArray[np.complex128]:
+    """Response of readings to truths at frequencies, rows of `sensor_of` x frequencies; rounding left out."""
+    s = 2j * np.pi * frequency_hz
+    late = np.exp(-s * sensors[:, DELAY, None])
+    return np.asarray(sensors[:, GAIN, None] * late / (1.0 + s * sensors[:, LAG, None]))
+
+
 def bench_sensor(model: Model, channel: str, share: float = 1.0) -> Array:
     """The row of a sensor on the bench that sees `share` of a channel: 0.5 where two sides add up to it.
 

@@ -58,6 +58,7 @@ def explain_gap(
     shown = _Shown(problem, unseen, done)
     return judged(
         Judged(
+            model,
             done,
             shown.left,
             lambda best: (shown.gaps(problem, best), shown.gaps(unseen, best) if holdout else {}),

@@ -16,8 +16,8 @@ from hil.plant import pack, sensor_of
 
 Array = npt.NDArray[np.float64]
 
-PRIOR_FACTOR = 3.0
-"""A base's number is right within this factor (one standard deviation of its logarithm)."""
+TOLERANCE = 0.02
+"""A number of a base is right to that share, where the model file states none, or it may be anything."""
 _LONGEST_DELAY_S = 0.5
 
 
@@ -26,7 +26,7 @@ class Coordinate:
     """One free number; a fit moves u from 0: value·e^u where `logarithmic`, else value + scale·u.
 
     `term` is the effect's place in the hypothesis, -1 for a number of the base; `base` is what the base says
-    of it, for the prior (None: no prior).
+    of it, right to a share `tolerance`, for the prior (None: no prior).
     """
 
     term: int
@@ -38,6 +38,7 @@ class Coordinate:
     upper: float
     base: float | None = None
     step: float = 1e-3
+    tolerance: float = TOLERANCE
 
     def at(self, u: float) -> float:
         """The number at a coordinate."""
@@ -105,7 +106,8 @@ class Hypothesis:
         if name in scales:  # may be zero
             highest = _LONGEST_DELAY_S if name == "torque_delay" else math.inf
             return Coordinate(-1, name, value, scales[name], False, 0.0, highest)
-        return Coordinate(-1, name, value, 1.0, True, value * 1e-3, value * 1e3, base)
+        tolerance = self.base.tolerance.get(name, TOLERANCE)
+        return Coordinate(-1, name, value, 1.0, True, value * 1e-3, value * 1e3, base, tolerance=tolerance)
 
     def moved(self, coordinates: Sequence[Coordinate], u: Array) -> Hypothesis:
         """The hypothesis at a point of its coordinates."""

@@ -2,10 +2,10 @@
 
 The score of a hypothesis is its log likelihood less half the number of its free numbers times log N (G.
 Schwarz, Ann. Statist. 6 (1978) 461) less the log of how many sets of so many names there are (J. Chen, Z.
-Chen, Biometrika 95 (2008) 759). Weights are the mean, over Bayesian bootstraps of the windows, of the softmax
-of the scores (pseudo-BMA+: Y. Yao, A. Vehtari, D. Simpson, A. Gelman, Bayesian Analysis 13 (2018) 917). Two
-names that leave about the same misfit, one better here and the other there, get modest odds by themselves;
-where every window says the same the odds are those of Bayes.
+Chen, Biometrika 95 (2008) 759), with the prior of the base's numbers. Weights are the mean, over Bayesian
+bootstraps of the windows, of the softmax of the scores (pseudo-BMA+: Y. Yao, A. Vehtari, D. Simpson, A.
+Gelman, Bayesian Analysis 13 (2018) 917). Two names that leave about the same misfit, one better here and the
+other there, get modest odds by themselves; where every window says the same the odds are those of Bayes.
 """
 
 from __future__ import annotations
@@ -26,12 +26,16 @@ _DRAWS = 1000
 
 @dataclass(frozen=True)
 class Candidate:
-    """A fitted hypothesis, log likelihood by window (windows,), free numbers, names to choose from."""
+    """A fitted hypothesis, log likelihood by window (windows,), free numbers, names to choose from.
+
+    `prior` is the logarithm of the density of its base's numbers.
+    """
 
     point: Point
     windows: Array
     free: int
     known: int
+    prior: float = 0.0
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -46,7 +50,8 @@ class Candidate:
     def score(self, values: float) -> float:
         """Log likelihood less what its size costs where the data hold so many independent values."""
         names = len(self.names)
-        return self.log_likelihood - 0.5 * self.free * log(max(values, 2.0)) - log(comb(self.known, names))
+        cost = 0.5 * self.free * log(max(values, 2.0)) + log(comb(self.known, names))
+        return self.log_likelihood + self.prior - cost
 
 
 def remains(had: Array, has: Array, noise: Array, slow: float) -> float:
@@ -56,9 +61,9 @@ def remains(had: Array, has: Array, noise: Array, slow: float) -> float:
         had: mean square of errors before, (3,); NaN where a channel was not recorded.
         has: the same after.
         noise: variance of proven noise, (3,).
-        slow: how many times that may be slow noise, and is not counted as what stays.
+        slow: how many times that may be slow noise, which no name takes off.
     """
-    before, after = had - noise, np.maximum(has - slow * noise, 0.0)
+    before, after = had - slow * noise, np.maximum(has - slow * noise, 0.0)
     there = np.isfinite(before) & (before > 0.0)
     if not there.any():
         return 1.0

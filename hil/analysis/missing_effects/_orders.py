@@ -19,8 +19,9 @@ from hil.plant import linear_system_of
 Array = npt.NDArray[np.float64]
 
 _HIGHEST = 60.0  # order
-_FINE = 0.02  # distance of orders that are looked at
-_PERIODS = 3.0  # of a ripple that a recording must hold
+FINE = 0.02
+"""Distance of orders that are looked at."""
+_PERIODS = 2.0  # of a ripple that a recording must hold
 _COUNT = 3
 _SOURCES = {"wheel": "extra_shaft_torque_nm", "rotor": "rotor_loss_nm"}
 
@@ -28,7 +29,7 @@ _SOURCES = {"wheel": "extra_shaft_torque_nm", "rotor": "rotor_loss_nm"}
 def orders_of(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) -> list[float]:
     """The most promising orders, best first; none where nothing turns."""
     system = linear_system_of(point.hypothesis.packed()[0])
-    orders = np.arange(_FINE, _HIGHEST, _FINE)
+    orders = np.arange(FINE, _HIGHEST, FINE)
     slopes, energy = np.zeros(len(orders), complex), np.zeros(len(orders))
     for index, one in enumerate(problem.series):
         error = np.where(one.has, np.nan_to_num(point.errors[index]), 0.0)
@@ -36,28 +37,30 @@ def orders_of(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) -
         frequency: Array = np.fft.rfftfreq(count, 1.0 / one.rate_hz).astype(np.float64)
         response = np.zeros((3, len(frequency)), complex)
         response[:, 1:] = system.response(frequency[1:], _SOURCES[side])
-        weight = np.where(one.has[:, None], problem.spectrum.weights(count, one.rate_hz).T ** 2, 0.0)
-        weight = np.nan_to_num(weight)
+        weight = np.where(
+            one.has[:, None], problem.spectrum.weights(count, one.rate_hz).T ** 2 * 2.0 / count, 0.0
+        )
+        weight = np.nan_to_num(weight) * 2.0 / count
         back = np.sum(np.conj(response) * weight * np.fft.rfft(error, axis=0).T, axis=0)
         pushed = np.fft.irfft(back, count)
         gain = np.sum(np.abs(response) ** 2 * weight, axis=0)
         angle = problem.angles[index][: count * one.block, 0 if side == "wheel" else 1]
         angle = angle.reshape(count, one.block).mean(axis=1)
-        slopes += _over_angle(pushed, angle, len(orders))
+        slopes += over_angle(pushed, angle, len(orders))
         speed = np.abs(np.gradient(angle)) * one.rate_hz / (2 * np.pi)
         energy += _energy(speed, orders, frequency, gain)
     promise = np.abs(slopes) ** 2 / np.maximum(energy, np.max(energy, initial=0.0) * 1e-3 + 1e-300)
     turns = max(float(np.ptp(angle)) for angle in _angles(problem, side)) / (2 * np.pi)
-    return _peaks(orders, np.where(orders * turns >= _PERIODS, promise, 0.0))
+    return peaks(orders, np.where(orders * turns >= _PERIODS, promise, 0.0), _COUNT)
 
 
 def _angles(problem: Problem, side: str) -> list[Array]:
     return [both[:, 0 if side == "wheel" else 1] for both in problem.angles]
 
 
-def _over_angle(values: Array, angle: Array, count: int) -> npt.NDArray[np.complex128]:
-    """Σ values·e^{-j·order·angle} at orders `_FINE`, 2·`_FINE` …: angles modulo one period of the finest."""
-    period = 2 * np.pi / _FINE
+def over_angle(values: Array, angle: Array, count: int) -> npt.NDArray[np.complex128]:
+    """Σ values·e^{-j·order·angle} at orders `FINE`, 2·`FINE` …: angles modulo one period of the finest."""
+    period = 2 * np.pi / FINE
     bins = 4 * count
     place = np.floor((angle % period) / period * bins).astype(int) % bins
     return np.asarray(np.fft.rfft(np.bincount(place, values, bins))[1 : count + 1])
@@ -75,10 +78,11 @@ def _energy(speed_hz: Array, orders: Array, frequency: Array, gain: Array) -> Ar
     return total
 
 
-def _peaks(orders: Array, promise: Array) -> list[float]:
+def peaks(orders: Array, promise: Array, count: int) -> list[float]:
+    """The most promising orders, well apart."""
     found: list[float] = []
     for at in np.argsort(promise)[::-1].tolist():
-        if promise[at] <= 0.0 or len(found) == _COUNT:
+        if promise[at] <= 0.0 or len(found) == count:
             break
         if all(abs(orders[at] - other) > 0.2 for other in found):
             found.append(float(orders[at]))

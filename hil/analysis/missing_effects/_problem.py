@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.missing_effects._hypothesis import PRIOR_FACTOR, Coordinate, Hypothesis
+from hil.analysis.missing_effects._hypothesis import Coordinate, Hypothesis
 from hil.analysis.missing_effects._series import Series
 from hil.analysis.missing_effects._spectrum import Spectrum
 from hil.core.model import Model
@@ -59,6 +59,12 @@ class Problem:
         """Largest variance of block means that may be noise, in that of white noise."""
         return 1.0 + self.series[0].block * (_SLOW_NOISE**2 - 1.0)
 
+    def is_noise(self, errors: Sequence[Array]) -> bool:
+        """Whether errors are at most what is proven, or usual for slow noise."""
+        square = self.mean_square(errors)
+        there = np.isfinite(square)
+        return bool(np.all(square[there] <= self.slow_noise * self.noise[there] ** 2))
+
     def mean_square(self, errors: Sequence[Array]) -> Array:
         """Of each channel over all recordings, (3,); NaN where it was not recorded."""
         whole = np.concatenate(errors)
@@ -89,14 +95,17 @@ class Problem:
         ]
 
     def weighed(self, index: int, values: Array) -> Array:
-        """sets x blocks x 3 as weighed transforms, sets x numbers: half the squares add to -log L."""
+        """sets x blocks x 3 as weighed transforms, sets x numbers: half the squares add to -log L.
+
+        The first block of each channel stands behind them, weighed by noise alone: a discrepancy is what a
+        model gathers on its way, so that a recording begins where it was measured to.
+        """
         one = self.series[index]
         seen = values[..., one.has]
         if not np.all(np.abs(seen) < _FAR):  # NaN as well
             seen = np.clip(np.nan_to_num(seen, nan=_FAR), -_FAR, _FAR)
-        transform = np.fft.rfft(seen, axis=1)
-        transform *= self.spectrum.weights(values.shape[1], one.rate_hz)[:, one.has]
-        return np.asarray(transform.reshape(len(values), -1).view(float), dtype=float)
+        first = seen[:, 0] / self.noise[one.has]
+        return np.concatenate([self.spectrum.weighed(seen, one.has, one.rate_hz), first], axis=1)
 
     def start_basis(self, index: int, hypothesis: Hypothesis, start: Array) -> tuple[Array, Array, Array]:
         """Change of weighed errors with a recording's start (numbers x states), sizes, and its basis."""
@@ -122,16 +131,39 @@ class Problem:
         return errors[0], ((errors[1:] - errors[0]) / steps[:, None]).T
 
     def prior(self, coordinates: Sequence[Coordinate], u: Array) -> Array:
-        """Numbers of the base away from what the base says, in standard deviations."""
-        sigma = np.log(PRIOR_FACTOR)
-        away = [
-            np.log(one.at(at) / one.base) if one.base else 0.0 for one, at in zip(coordinates, u, strict=True)
-        ]
-        return np.asarray(np.array(away, dtype=float) / sigma, dtype=float)
+        """Numbers of the base away from what it says: half the squares add to -log of a Cauchy density.
 
-    def prior_slopes(self, coordinates: Sequence[Coordinate]) -> Array:
+        A number is calibrated, or it may be anything: one of two explanations that moves fewer numbers is
+        the likelier, while a base that is far off as a whole says nothing.
+        """
+        away = self._away(coordinates, u)
+        return np.asarray(np.sign(away) * np.sqrt(2.0 * np.log1p(away**2)))
+
+    def prior_slopes(self, coordinates: Sequence[Coordinate], u: Array) -> Array:
         """Derivatives of `prior`, on the diagonal."""
-        return np.diag([1.0 / np.log(PRIOR_FACTOR) if one.base else 0.0 for one in coordinates])
+        away = np.abs(self._away(coordinates, u)) + 1e-9
+        slopes = 2.0 * away / (1.0 + away**2) / np.sqrt(2.0 * np.log1p(away**2))
+        return np.diag(
+            [s / one.tolerance if one.base else 0.0 for s, one in zip(slopes, coordinates, strict=True)]
+        )
+
+    def prior_chords(self, coordinates: Sequence[Coordinate], u: Array) -> Array:
+        """Slopes of `prior` back to where a base's numbers would be right, on the diagonal."""
+        away = np.abs(self._away(coordinates, u)) + 1e-9
+        slopes = np.sqrt(2.0 * np.log1p(away**2)) / away
+        return np.diag(
+            [s / one.tolerance if one.base else 0.0 for s, one in zip(slopes, coordinates, strict=True)]
+        )
+
+    @staticmethod
+    def _away(coordinates: Sequence[Coordinate], u: Array) -> Array:
+        return np.array(
+            [
+                np.log(one.at(at) / one.base) / one.tolerance if one.base else 0.0
+                for one, at in zip(coordinates, u.tolist(), strict=True)
+            ],
+            dtype=float,
+        )
 
 
 def _step(one: Coordinate, at: float) -> float:

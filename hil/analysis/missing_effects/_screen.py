@@ -35,11 +35,15 @@ _SWEEPS = 20  # of coordinate descent over at most two bounded factors
 
 @dataclass(frozen=True)
 class Promise:
-    """An effect at a size beside a point, and the growth of log L that it promises to first order."""
+    """An effect at a size beside a point, and the growth of log L that it promises to first order.
+
+    `numbers` is the point's hypothesis with numbers moved as that promise has them.
+    """
 
     use: EffectUse
     point: Point
     gain: float
+    numbers: Hypothesis
 
     @property
     def label(self) -> str:
@@ -48,11 +52,12 @@ class Promise:
 
 
 @dataclass(frozen=True)
-class _Scene:
-    """What probes take their sizes from."""
+class Scene:
+    """What probes take their sizes from; orders of turning are those of the misfit at a point."""
 
     problem: Problem
-    at: Linearised
+    hypothesis: Hypothesis
+    point: Point | None = None
 
     @cached_property
     def torque_nm(self) -> float:
@@ -65,7 +70,7 @@ class _Scene:
 
     @cached_property
     def parameters(self) -> dict[str, float]:
-        return dict(chain_numbers(self.at.point.hypothesis.model())._asdict())
+        return dict(chain_numbers(self.hypothesis.model())._asdict())
 
     @cached_property
     def channels(self) -> tuple[str, ...]:
@@ -73,24 +78,25 @@ class _Scene:
         return tuple(name for name, there in zip(OUTPUTS, has, strict=True) if there)
 
     def orders(self, side: Literal["wheel", "rotor"]) -> list[float]:
-        return orders_of(self.problem, self.at.point, side)
+        return orders_of(self.problem, self.point, side) if self.point else []
 
 
 def promises(problem: Problem, at: Linearised) -> list[Promise]:
     """All sizes of every effect that may be added to a point, each with what it promises."""
-    scene = _Scene(problem, at)
+    scene = Scene(problem, at.point.hypothesis, at.point)
     project = _Projection(problem, at)
     whole = 0.5 * float(at.left @ at.left)
     found: list[Promise] = []
     for effect in EFFECTS.values():
         if may_join(effect, at.point.hypothesis):
-            for probe in _probes_of(effect, scene):
+            for probe in probes_of(effect, scene):
                 uses = [EffectUse(effect.id, dict(one.values)) for one in probe.directions]
                 if any(label_of(use) in at.point.hypothesis.names for use in uses):
                     continue
-                factors, drop = project.explained(uses, probe.directions)
+                factors, drop, u = project.explained(uses, probe.directions)
                 use = EffectUse(effect.id, dict(probe.start(factors)))
-                found.append(Promise(use, at.point, _gain(drop, whole)))
+                moved = at.point.hypothesis.moved(at.coordinates, u)
+                found.append(Promise(use, at.point, _gain(drop, whole), moved))
     return found
 
 
@@ -109,7 +115,8 @@ def may_join(effect: Effect, hypothesis: Hypothesis) -> bool:
     return bool(effect.text_parameters) or effect.id not in taken
 
 
-def _probes_of(effect: Effect, scene: _Scene) -> Iterator[Probe]:
+def probes_of(effect: Effect, scene: Scene) -> Iterator[Probe]:
+    """Sizes of an effect to try, by its own file or by the unit of its first number."""
     if effect.probes is not None:
         yield from effect.probes(scene)
     first = effect.parameters[0]
@@ -126,7 +133,7 @@ def _scaled(values: dict[str, float | str], name: str) -> Callable[[Sequence[flo
     return lambda factors: values | {name: max(float(factors[0]), 0.1) * float(values[name])}
 
 
-def _size(effect: Effect, scene: _Scene) -> float:
+def _size(effect: Effect, scene: Scene) -> float:
     """A large size of an effect's first number, by its unit: a torque, or a torque over a speed."""
     speed = float(np.sqrt(np.mean([np.nanmean(one.samples[:, :2] ** 2) for one in scene.problem.series])))
     torque = scene.torque_nm * scene.parameters["gear_ratio"]
@@ -146,22 +153,26 @@ class _Projection:
 
     def changes(self, hypotheses: Sequence[Hypothesis]) -> Array:
         """Weighed changes (numbers x hypotheses) beside what numbers and starts could do."""
+        d = self._alone(hypotheses)
+        return np.asarray(d - self.slopes @ (self.at.covariance @ (self.slopes.T @ d)))
+
+    def _alone(self, hypotheses: Sequence[Hypothesis]) -> Array:
         packed = [one.packed() for one in hypotheses]
         parts = []
         for index, start in enumerate(self.at.point.starts):
             shown = self.problem.simulated(index, packed, np.repeat(start[None], len(packed), axis=0))
             change = self.problem.weighed(index, shown - self.plain[index])
             parts.append(without(self.at.bases[index], change.T))
-        d = np.concatenate(parts)
-        return np.asarray(d - self.slopes @ (self.at.covariance @ (self.slopes.T @ d)))
+        return np.concatenate([*parts, np.zeros((len(self.at.coordinates), len(hypotheses)))])
 
     def explained(
         self, uses: Sequence[EffectUse], directions: Sequence[Direction]
-    ) -> tuple[list[float], float]:
-        """Factors of the directions within their bounds, and the drop that they bring."""
-        d = self.changes([self.at.point.hypothesis.with_term(use) for use in uses])
-        if not np.all(np.isfinite(d)):
-            return [1.0] * len(uses), -math.inf
+    ) -> tuple[list[float], float, Array]:
+        """Factors of the directions within bounds, the drop that they bring, and moves of the numbers."""
+        alone = self._alone([self.at.point.hypothesis.with_term(use) for use in uses])
+        if not np.all(np.isfinite(alone)):
+            return [1.0] * len(uses), -math.inf, np.zeros(len(self.at.coordinates))
+        d = alone - self.slopes @ (self.at.covariance @ (self.slopes.T @ alone))
         normal, right = d.T @ d, d.T @ self.at.left
         factors = np.clip(np.ones(len(uses)), [o.lower for o in directions], [o.upper for o in directions])
         for _ in range(_SWEEPS if len(uses) > 1 else 1):
@@ -169,7 +180,8 @@ class _Projection:
                 rest = right[i] - normal[i] @ factors + normal[i, i] * factors[i]
                 factors[i] = min(max(rest / max(normal[i, i], 1e-300), one.lower), one.upper)
         drop = float(factors @ right - 0.5 * factors @ normal @ factors)
-        return factors.tolist(), drop
+        moves = self.at.covariance @ (self.slopes.T @ (alone @ factors - self.at.left))
+        return factors.tolist(), drop, np.clip(moves, -1.0, 1.0)  # a factor e at most
 
 
 def promised_by(problem: Problem, at: Linearised, hypotheses: Sequence[Hypothesis]) -> list[float]:

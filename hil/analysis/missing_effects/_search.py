@@ -18,15 +18,16 @@ from hil.analysis.missing_effects._fit import (
     with_better_starts,
 )
 from hil.analysis.missing_effects._hypothesis import Hypothesis
+from hil.analysis.missing_effects._linear import structures
 from hil.analysis.missing_effects._odds import Candidate, remains
 from hil.analysis.missing_effects._problem import Problem
-from hil.analysis.missing_effects._response import numbers_by_response
 from hil.analysis.missing_effects._screen import (
     best_by_name,
     may_join,
     promised_by,
     promises,
 )
+from hil.analysis.missing_effects._spectrum import white
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 
@@ -76,6 +77,8 @@ class Search:
         point = point_at(self.problem, hypothesis, near.point.starts if near else None)
         best = before = self._candidate(point)
         problem = self.problem
+        if hypothesis.kind == "rigid":  # slow errors of a mass are friction; a chain's bend its resonances
+            problem = problem.weighed_by(white(problem.noise, problem.rate_hz))
         for number in range(rounds):
             # slow misfit would trade a dead time for anything, until errors are weighed by their colour
             held = frozenset() if number else frozenset({"torque_delay"})
@@ -90,52 +93,70 @@ class Search:
         self.found[key] = max(self.found.get(key, best), best, key=self.score)
         return best
 
+    def at(self, hypothesis: Hypothesis, near: Candidate) -> Candidate:
+        """A hypothesis as it is, from the starts of another."""
+        return self._candidate(point_at(self.problem, hypothesis, near.point.starts))
+
     def _candidate(self, point: Point) -> Candidate:
         hypothesis = point.hypothesis
         known = sum(may_join(effect, Hypothesis(hypothesis.base, {})) for effect in EFFECTS.values())
-        free = len(self.problem.coordinates(hypothesis))
-        return Candidate(point, point.powers(self.problem).log_likelihood(self.problem.noise), free, known)
+        coordinates = self.problem.coordinates(hypothesis)
+        prior = -0.5 * float(np.sum(self.problem.prior(coordinates, np.zeros(len(coordinates))) ** 2))
+        windows = point.powers(self.problem).log_likelihood(self.problem.noise)
+        return Candidate(point, windows, len(coordinates), known, prior)
 
 
 def search(problem: Problem, show: Callable[[str], None]) -> Search:
-    """Fit the numbers alone, then grow and prune sets of effects."""
-    done = Search(problem)
+    """Fit the numbers alone, then grow and prune sets of effects until noise is left or none pays."""
     show("numbers alone")
-    starts = _starts(problem)
-    tried = [done.fitted(one, None, _SHORT) for one in starts]
-    best = max([done.fitted(one.point.hypothesis, one) for one in tried], key=done.score)
+    start, *linear = _starts(problem)
+    begun = with_better_starts(problem, point_at(problem, start))
+    spectrum = begun.powers(problem).spectrum(problem.noise)
+    done = Search(replace(problem, spectrum=spectrum))
+    tried = done.fitted(start, None, _SHORT)
+    best = done.fitted(tried.point.hypothesis, tried)
     done.go_on_from(best)
-    while len(best.names) < _MOST_NAMES:
-        grown = _grown(done, best, show)
+    while len(best.names) < _MOST_NAMES and not problem.is_noise(best.point.errors):
+        grown = _grown(done, best, linear if not best.names else (), show)
         if grown is None or done.score(grown) <= done.score(best):
             break
+        had, has = (problem.mean_square(one.point.errors) for one in (best, grown))
+        if remains(had, has, problem.noise**2, problem.slow_noise) > HALF:
+            break  # what it takes off would not do for a name
         best = _pruned(done, grown)
         done.go_on_from(best)
     return done
 
 
 def _starts(problem: Problem) -> list[Hypothesis]:
-    """Numbers by the data where a mass turns; of a chain with shafts those or the base, the likelier."""
+    """Numbers alone by the data, then with linear effects that responses show behind them.
+
+    Of a chain with shafts the base's own numbers stay where they are the likelier.
+    """
     base = Hypothesis(problem.model, dict(problem.model.parameters))
     read = read_numbers(problem.model, problem.series)
-    if read is not None:
-        return [read]
-    shown = numbers_by_response(problem.model, problem.series)
+    found = [read] if read is not None else structures(problem)
 
     def likelihood(one: Hypothesis) -> float:
         point = with_better_starts(problem, point_at(problem, one))
         return float(np.sum(point.powers(problem).log_likelihood(problem.noise)))
 
-    return [base] if shown is None else [max((base, shown), key=likelihood)]
+    if read is None and (not found or likelihood(base) > likelihood(found[0])):
+        found = [base, *found[1:]]
+    return found
 
 
-def _grown(done: Search, best: Candidate, show: Callable[[str], None]) -> Candidate | None:
+def _grown(
+    done: Search, best: Candidate, linear: Sequence[Hypothesis], show: Callable[[str], None]
+) -> Candidate | None:
     """The best hypothesis with one more effect; None where no effect promises more than it costs.
+
+    `linear` are hypotheses that responses suggest.
 
     Losses (friction, drag, resistance), which every driveline has, are tried before rarer names: these are
     not looked at where a loss takes off half of what stays or more.
     """
-    suggested = _suggested(done, best)
+    suggested = [*((one, math.inf) for one in linear), *_suggested(done, best)]
     losses = [one for one in suggested if _is_loss(one[0])]
     grown = _best_of(done, best, losses, show)
     if grown is not None and done.score(grown) > done.score(best):
@@ -186,8 +207,8 @@ def _suggested(done: Search, best: Candidate) -> list[tuple[Hypothesis, float]]:
     promise more than they cost, best first.
     """
     read = readings(best.point.hypothesis, done.problem.series)
-    by_name = {one.hypothesis.names: one.hypothesis for one in reversed(read[1:])}
-    order = dict.fromkeys(one.hypothesis.names for one in read[1:])
+    by_name = {one.hypothesis.names: one.hypothesis for one in reversed(read)}
+    order = dict.fromkeys(one.hypothesis.names for one in read)
     found = [(by_name[names], math.inf) for names in [*order][:_READ]]
     promised = promises(done.problem, linearised(done.problem, best.point))
     cost = done.cost_of_a_number(best)
@@ -195,7 +216,8 @@ def _suggested(done: Search, best: Candidate) -> list[tuple[Hypothesis, float]]:
     for sizes in best_by_name(promised, _SIZES)[:_TRIED]:
         abrupt = EFFECTS[sizes[0].use.id].abrupt
         for one in sizes if abrupt else sizes[:1]:
-            found.append((best.point.hypothesis.with_term(one.use), one.gain))
+            starts = [base.with_term(one.use) for base in (best.point.hypothesis, one.numbers)]
+            found.append((max(starts, key=lambda h: done.score(done.at(h, best))), one.gain))
     return found
 
 
@@ -218,6 +240,8 @@ def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candi
             for value in (*parameter.opens, size, -size)
             if value and parameter.lower <= value <= parameter.upper
         ]
+        if not wider:
+            continue
         problem = done.problem.weighed_by(best.point.powers(done.problem).spectrum(done.problem.noise))
         gains = promised_by(problem, linearised(problem, best.point), wider)
         if max(gains) <= done.cost_of_a_number(best):
@@ -227,7 +251,7 @@ def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candi
         if 0.0 in parameter.opens:  # where it does nothing: a fit goes on from what is settled
             rest = EffectUse(use.id, {**use.values, parameter.name: 0.0})
             begins = hypothesis.without(index).with_term(rest, opened | {parameter.name})
-        tried = done.fitted(begins, best)
+        tried = done.fitted(begins, best, _SHORT)
         best = max(best, tried, key=done.score)
     return best
 

@@ -44,11 +44,14 @@ class Spectrum:
     variance: Array
 
     def weights(self, length: int, rate_hz: float) -> Array:
-        """What the transform of `length` errors is multiplied by: bins x 3, so that squares add to -log L."""
-        frequency = np.fft.rfftfreq(length, 1.0 / rate_hz)
-        band = np.clip(np.searchsorted(self.edges_hz, frequency, side="right") - 1, 0, len(self.edges_hz) - 2)
-        twice = np.where(frequency > 0.0, 2.0, 1.0)
-        return np.asarray(np.sqrt(twice[:, None] / (length * self.variance.T[band])))
+        """One over the standard deviation of each bin of a transform of so many blocks: bins x 3."""
+        return np.asarray(1.0 / np.sqrt(self.variance.T[_bands(self.edges_hz, length, rate_hz)]))
+
+    def weighed(self, values: Array, channels: npt.NDArray[np.bool_], rate_hz: float) -> Array:
+        """sets x blocks x channels as numbers, sets x numbers, half whose squares add to -log L."""
+        length = _window_of(values.shape[1], rate_hz)
+        transform = transformed(values, rate_hz) * self.weights(length, rate_hz)[:, channels]
+        return np.asarray(transform.reshape(len(values), -1).view(float), dtype=float)
 
 
 def edges_hz(rate_hz: float) -> Array:
@@ -105,7 +108,24 @@ class Powers:
         n = np.where(np.isfinite(noise), noise, 1.0)[:, None] ** 2 * np.ones_like(total)
         p = np.maximum(np.sum(self.bins * self.power, axis=0) / np.maximum(total, 1e-300), n)
         d = np.where(self.signal > 0.0, RIGHT_TO**2 * self.signal, 1.0)[:, None] * np.ones_like(total)
-        return p, n, d, np.max(self.bins, axis=(0, 1)) / _LAPPED
+        return p, n, d, np.maximum(np.max(self.bins, axis=(0, 1)) / _LAPPED, 1.0)
+
+
+def transformed(values: Array, rate_hz: float) -> npt.NDArray[np.complex128]:
+    """Windows of values (sets x blocks x channels) by frequency: sets x windows x bins x channels.
+
+    Hann's windows of `SEGMENT_S` or the whole, lapped by half or more, so that a slow misfit does not leak
+    into the octaves of noise; squares over windows and bins are powers of a block times bins.
+    """
+    blocks = values.shape[1]
+    length = _window_of(blocks, rate_hz)
+    count = 1 + int(np.ceil((blocks - length) / max(1, length // 2)))
+    window = np.sqrt(8.0 / 3.0 / length) * (
+        0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(length) + 0.5) / length)
+    )
+    firsts = np.linspace(0, blocks - length, count).round().astype(int)
+    parts = np.stack([values[:, first : first + length] for first in firsts], axis=1)
+    return np.asarray(np.fft.rfft(parts * window[:, None], axis=2))
 
 
 def powers_of(errors: Sequence[Array], rate_hz: float, signal: Array) -> Powers:
@@ -113,16 +133,28 @@ def powers_of(errors: Sequence[Array], rate_hz: float, signal: Array) -> Powers:
     edges = edges_hz(rate_hz)
     power, bins = [], []
     for error in errors:
-        length = min(len(error), round(SEGMENT_S * rate_hz))
-        window = np.sqrt(8.0 / 3.0) * (0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(length) + 0.5) / length))
-        band = np.searchsorted(edges, np.fft.rfftfreq(length, 1.0 / rate_hz), side="right") - 1
-        hop = max(1, length // 2)
+        squares = np.abs(transformed(error[None], rate_hz)[0]) ** 2
+        band = _bands(edges, _window_of(len(error), rate_hz), rate_hz)
         inside = np.stack([np.bincount(band, minlength=len(edges) - 1)] * error.shape[1]).astype(float)
-        for first in range(0, len(error) - length + 1, hop):
-            part = error[first : first + length]
-            spectrum = np.abs(np.fft.rfft(part * window[:, None], axis=0)) ** 2 / length
-            sums = np.stack([np.bincount(band, column, len(edges) - 1) for column in spectrum.T])
+        for one in squares:
+            sums = np.stack([np.bincount(band, column, len(edges) - 1) for column in one.T])
             there = np.isfinite(sums)
             power.append(np.where(there, sums / np.maximum(inside, 1.0), 0.0))
             bins.append(np.where(there, _LAPPED * inside, 0.0))
     return Powers(edges, np.array(power), np.array(bins), signal)
+
+
+def _window_of(blocks: int, rate_hz: float) -> int:
+    """Blocks of a window of a recording of so many blocks."""
+    return min(blocks, round(SEGMENT_S * rate_hz))
+
+
+def _bands(edges: Array, length: int, rate_hz: float) -> npt.NDArray[np.int64]:
+    """Band of each bin of a transform of so many blocks."""
+    return bands_of(edges, np.fft.rfftfreq(length, 1.0 / rate_hz).astype(np.float64))
+
+
+def bands_of(edges: Array, frequency_hz: Array) -> npt.NDArray[np.int64]:
+    """Band of each frequency."""
+    found = np.searchsorted(edges, frequency_hz, side="right") - 1
+    return np.asarray(np.clip(found, 0, len(edges) - 2))

@@ -18,29 +18,34 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.missing_effects._curve import curves_of
-from hil.analysis.missing_effects._fit import Linearised, linearised
+from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised, point_at
+from hil.analysis.missing_effects._hypothesis import TOLERANCE, Hypothesis
 from hil.analysis.missing_effects._noise import rounding_step
 from hil.analysis.missing_effects._odds import Candidate, remains, weights_of
 from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Verdict
+from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._search import HALF, Search
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
-from hil.core.model import EffectUse
+from hil.core.model import EffectUse, Model
 
 Array = npt.NDArray[np.float64]
 
-_TOLERANCE = 0.02
-"""A number that is off by less is calibrated, where the model file states no tolerance."""
 _ALIKE = np.log(20.0)
 """Two hypotheses are alike where the data would give the right one odds below 20:1."""
+_LATE = {"actuator_lag": ("sensor_lag", "time_constant_s"), "dead_time": ("channel_skew", "delay_s")}
 _RIVALS = 3  # names that may take the place of another
 _SHOWN = 5  # alternatives
 
 
 @dataclass(frozen=True)
 class Judged:
-    """A search, and what a candidate leaves: variance on data not fitted, gaps of both kinds of data."""
+    """A search, and what a candidate leaves: variance on data not fitted, gaps of both kinds of data.
 
+    `asked` is the model as it came.
+    """
+
+    asked: Model
     done: Search
     left: Callable[[Candidate], Array]
     gaps: Callable[[Candidate], tuple[dict[str, Gap], dict[str, Gap]]]
@@ -62,20 +67,20 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     for index, use in enumerate(best.point.hypothesis.terms):
         named = _named(best, index, use, at, candidates, weights, rivals, shares[index])
         (effects if named.confidence >= HALF else doubtful).append(named)
-    numbers = _numbers(at)
+    numbers = _numbers(at, of.asked)
     far = _is_far(numbers, done)
-    if not far and _is_noise(done, best):  # what has no name bends numbers as well
+    if not far and done.problem.is_noise(best.point.errors):  # what has no name bends numbers as well
         sure = sum(
             float(w) for one, w in zip(candidates, weights, strict=True) if {*one.names} >= {*best.names}
         )
         effects += _mismatches(done, numbers, sure)
-    if not best.names and _is_noise(done, best):
+    if not best.names and done.problem.is_noise(best.point.errors):
         effects += _roundings(done, float(weights[candidates.index(best)]))
     something_else = _remains(of, done.found[()], best) if best.names else 0.0
     verdict: Verdict = "unknown"
     if effects:
         verdict = "named"
-    elif not best.names and _is_noise(done, best):
+    elif not best.names and done.problem.is_noise(best.point.errors):
         verdict = "none"
     others = _others(best, candidates, weights)
     return Outcome(
@@ -104,7 +109,7 @@ def _swapped(done: Search, best: Candidate) -> None:
     A forward search finds a name beside those before it; names that could stand in its place must be given
     the chance, or the data would seem to tell them apart.
     """
-    if _is_noise(done, best):
+    if done.problem.is_noise(best.point.errors):
         return
     pool = sorted(done.found.values(), key=done.score, reverse=True)
     uses = {label: one for one in pool for label in one.names}
@@ -140,7 +145,8 @@ def _named(
         for name in use.values
         if np.isfinite(at.standard_error(index, name))
     }
-    test = "; or ".join(dict.fromkeys(EFFECTS[name.split("(")[0]].shown_by for name in (label, *alike)))
+    names = [part for name in (label, *alike) for part in name.split(" + ")]
+    test = "; or ".join(dict.fromkeys(EFFECTS[name.split("(")[0]].shown_by for name in names))
     return Named(use, held * share, errors, alike, test if alike else "")
 
 
@@ -148,16 +154,6 @@ def _remains(of: Judged, before: Candidate, after: Candidate) -> float:
     """Share of the variance beyond noise that stays on data not fitted."""
     problem = of.done.problem
     return remains(of.left(before), of.left(after), problem.noise**2, problem.slow_noise)
-
-
-def _is_noise(done: Search, best: Candidate) -> bool:
-    """Whether errors are at most what is proven, or usual for slow noise."""
-    errors = np.concatenate(best.point.errors)
-    for column, level in enumerate(done.problem.noise):
-        seen = errors[np.isfinite(errors[:, column]), column]
-        if len(seen) and np.mean(seen**2) > done.problem.slow_noise * level**2:
-            return False
-    return True
 
 
 def _roundings(done: Search, weight: float) -> list[Named]:
@@ -183,13 +179,42 @@ def _alike(done: Search, best: Candidate, candidates: Sequence[Candidate]) -> di
         lost, new = {*best.names} - {*one.names}, {*one.names} - {*best.names}
         if len(lost) != 1 or len(new) != 1 or done.score(best) - done.score(one) > _ALIKE:
             continue
-        apart = 0.0
-        for index, (a, b) in enumerate(zip(best.point.errors, one.point.errors, strict=True)):
-            apart += 0.5 * float(np.sum(problem.weighed(index, np.nan_to_num(a - b)[None]) ** 2))
-        if apart < _ALIKE:
+        if _apart(problem, best.point, one.point) < _ALIKE:
             name = lost.pop()
             found[name] = (*found.get(name, ()), new.pop())
+    for index, use in enumerate(best.point.hypothesis.terms):
+        late = _late_outputs(done, best.point.hypothesis.without(index), use)
+        if late is None:
+            continue
+        laws = [EFFECTS[other.id].law for other in best.point.hypothesis.without(index).terms]
+        linear = all(law.chain is not None or law.reads is not None for law in laws)
+        other = best.point if linear else fit(problem, point_at(problem, late, best.point.starts))
+        if _apart(problem, best.point, other) < _ALIKE:
+            label = best.names[index]
+            names = [name for name in late.names if name not in best.names]
+            found[label] = (*found.get(label, ()), " + ".join(names))
     return found
+
+
+def _apart(problem: Problem, one: Point, other: Point) -> float:
+    """Log odds by which the data would tell the predictions of two points apart."""
+    pairs = enumerate(zip(one.errors, other.errors, strict=True))
+    return sum(
+        0.5 * float(np.sum(problem.weighed(index, np.nan_to_num(a - b)[None]) ** 2))
+        for index, (a, b) in pairs
+    )
+
+
+def _late_outputs(done: Search, rest: Hypothesis, use: EffectUse) -> Hypothesis | None:
+    """All outputs late alike in place of a late torque: in a linear axle the two are one."""
+    if use.id not in _LATE:
+        return None
+    has = np.any([one.has for one in done.problem.series], axis=0)
+    sensor, number = _LATE[use.id]
+    for channel in (name for name, there in zip(OUTPUTS, has, strict=True) if there):
+        late = float(use.values[EFFECTS[use.id].parameters[0].name])
+        rest = rest.with_term(EffectUse(sensor, {"channel": channel, number: late}))
+    return rest
 
 
 def _others(best: Candidate, candidates: Sequence[Candidate], weights: Array) -> list[Named]:
@@ -207,12 +232,11 @@ def _others(best: Candidate, candidates: Sequence[Candidate], weights: Array) ->
     ]
 
 
-def _numbers(at: Linearised) -> dict[str, tuple[float, float, float]]:
+def _numbers(at: Linearised, asked: Model) -> dict[str, tuple[float, float, float]]:
     """Numbers of the base: as it came, as found, standard error."""
-    hypothesis = at.point.hypothesis
     return {
-        name: (float(hypothesis.base.parameters[name]), float(value), at.standard_error(-1, name))
-        for name, value in hypothesis.numbers.items()
+        name: (float(asked.parameters[name]), float(value), at.standard_error(-1, name))
+        for name, value in at.point.hypothesis.numbers.items()
     }
 
 
@@ -220,28 +244,31 @@ def _off(name: str, numbers: Mapping[str, tuple[float, float, float]], done: Sea
     """How far a number moved and how sure that is, both in tolerances."""
     base, found, error = numbers[name]
     size = abs(base) or done.problem.scales[name]  # only numbers that have a scale may be zero
-    tolerance = done.problem.model.tolerance.get(name, _TOLERANCE) * size
+    tolerance = done.problem.model.tolerance.get(name, TOLERANCE) * size
     return abs(found - base) / tolerance, error / tolerance
 
 
 def _is_far(numbers: Mapping[str, tuple[float, float, float]], done: Search) -> bool:
-    """Whether most of the numbers that the data fix within their tolerance are not what the base says."""
+    """Whether most of the numbers that the data fix are not what the base says.
+
+    The prior alone leaves 0.7 of a tolerance.
+    """
     known = [_off(name, numbers, done) for name in numbers]
-    fixed = [moved for moved, error in known if error < 1.0]
+    fixed = [moved for moved, error in known if error < HALF]
     return len(fixed) > 1 and sum(moved > 1.0 for moved in fixed) > HALF * len(fixed)
 
 
 def _mismatches(
     done: Search, numbers: Mapping[str, tuple[float, float, float]], weight: float
 ) -> list[Named]:
-    """Numbers that are wrong by more than their tolerance, each with the probability of that."""
+    """Numbers that are wrong by more than their tolerance and doubt, each with the probability of that."""
     from scipy.special import ndtr
 
     found = []
     for name, (_, value, error) in numbers.items():
         moved, doubt = _off(name, numbers, done)
         sure = weight * float(ndtr((moved - 1.0) / max(doubt, 1e-12)))
-        if sure >= HALF and moved > 1.0:
+        if sure >= HALF and moved - 1.0 > doubt:
             found.append(
                 Named(
                     EffectUse("parameter_mismatch", {"parameter": name, "value": value}),

@@ -69,7 +69,29 @@ def _embir(directory):
     (directory / DATA_SETS["embir"].files[0]).write_text(text)
 
 
-WRITTEN = {"embir": _embir, "emps": _emps, "hsm150": _hsm150, "lorenz": _lorenz, "lexium62": _lexium62}
+def _fditools(directory):
+    time = np.arange(50_000) / 2500.0
+    speed = np.sin(2.0 * np.pi * 0.8 * time)
+    angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) / 2500.0)])
+    columns = {
+        "iq_adx": 2.0 * speed,
+        "theta_mx": angle,
+        "theta_my": -angle,
+        "omega_max": speed,
+        "omega_may": -speed,
+    }
+    for letter in "AB":
+        savemat(directory / f"MultisineType{letter}.mat", columns)
+
+
+WRITTEN = {
+    "embir": _embir,
+    "emps": _emps,
+    "hsm150": _hsm150,
+    "lorenz": _lorenz,
+    "lexium62": _lexium62,
+    **dict.fromkeys([name for name in DATA_SETS if name.startswith("fditools")], _fditools),
+}
 #: Torque in N m (force in N) at a speed of 1, which the files above hold in their own units.
 TORQUE = {
     "embir": 0.1,
@@ -77,6 +99,7 @@ TORQUE = {
     "hsm150": 70.0,
     "lorenz": 70.0,
     "lexium62": 0.795915429599640 - 0.00559804068576,
+    **dict.fromkeys([name for name in DATA_SETS if name.startswith("fditools")], 2.0),
 }
 
 
@@ -88,7 +111,8 @@ def test_torque_and_speed_arrive_in_our_units(name, tmp_path):
     measured = one.read(tmp_path)
     for recording in (*measured.recordings, *measured.holdout):
         assert isinstance(recording, Recording)
-        assert recording.sample_time_s == pytest.approx(1e-3, rel=1e-6)
+        sample_s = 4e-4 if name.startswith("fditools") else 1e-3
+        assert recording.sample_time_s == pytest.approx(sample_s, rel=1e-6)
         top = np.argmax(recording[SPEED])
         assert recording[SPEED][top] == pytest.approx(1.0, abs=1e-4)
         assert recording[INPUT][top] == pytest.approx(TORQUE[name], rel=1e-4)
@@ -96,9 +120,12 @@ def test_torque_and_speed_arrive_in_our_units(name, tmp_path):
 
 
 @pytest.mark.parametrize("name", sorted(DATA_SETS))
-def test_the_models_to_start_from_have_one_mass_and_viscous_friction(name, tmp_path):
+def test_the_models_to_start_from_have_one_mass_and_viscous_friction_or_two_masses(name, tmp_path):
     WRITTEN[name](tmp_path)
     for start in DATA_SETS[name].read(tmp_path).starts.values():
+        if name.startswith("fditools"):
+            assert start.kind == "two_inertia"
+            continue
         assert start.kind == "rigid"
         assert not start.effects
         assert start.parameters["gear_ratio"] == 1.0

@@ -51,9 +51,20 @@ def test_halving_a_misfit_far_from_noise_gains_what_its_octaves_gain() -> None:
     assert gain == pytest.approx(0.5 * windows * 3 * octaves * np.log(4.0), rel=0.01)
 
 
-def test_squares_of_weighed_transforms_add_to_those_of_the_samples() -> None:
-    errors = np.random.default_rng(2).normal(0.0, 1.0, 1000)
-    weights = white(np.full(3, 0.5), RATE_HZ).weights(1000, RATE_HZ)[:, 0]
-    transform = np.fft.rfft(errors) * weights
-    # one-sided: the last bin of an even length counts twice
-    assert np.sum(np.abs(transform) ** 2) == pytest.approx(np.sum(errors**2) / 0.25, rel=0.01)
+def test_squares_of_weighed_windows_add_to_those_of_the_samples() -> None:
+    errors = np.random.default_rng(2).normal(0.0, 1.0, (1, 20_000, 2))
+    channels = np.array([True, False, True])
+    weighed = white(np.full(3, 0.5), RATE_HZ).weighed(errors, channels, RATE_HZ)
+    assert np.sum(weighed**2) == pytest.approx(np.sum(errors**2) / 0.25, rel=0.05)  # ends count half
+
+
+def test_a_drift_stays_out_of_the_octaves_of_noise() -> None:
+    drift = np.repeat(np.linspace(0.0, 100.0, 5000)[:, None], 3, axis=1)
+    powers = powers_of([drift], RATE_HZ, np.full(3, 1e4))
+    assert np.max(powers.power[:, :, 5:]) < 1e-6 * np.max(powers.power)
+
+
+def test_windows_reach_both_ends_of_a_recording() -> None:
+    errors = np.zeros((1700, 3))
+    errors[-300:] = 1.0
+    assert np.sum(powers_of([errors], RATE_HZ, np.ones(3)).power) > 0.0
