@@ -110,8 +110,8 @@ def search(problem: Problem, show: Callable[[str], None]) -> Search:
     """Fit the numbers alone, then grow and prune sets of effects until noise is left or none pays."""
     show("numbers alone")
     start, *linear = _starts(problem)
-    begun = with_better_starts(problem, point_at(problem, start))
-    spectrum = begun.powers(problem).spectrum(problem.noise)
+    started = with_better_starts(problem, point_at(problem, start))
+    spectrum = started.powers(problem).spectrum(problem.noise)
     done = Search(replace(problem, spectrum=spectrum))
     tried = done.fitted(start, None, _SHORT)
     best = done.fitted(tried.point.hypothesis, tried)
