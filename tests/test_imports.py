@@ -11,18 +11,6 @@ import pytest
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("hil", "drivers", "test_plans", "reports", "sim_backend")
 
-#: Debts, by the package that imports and the package whose private modules it imports: none may join them,
-#: and one that is paid goes.
-_DIAGNOSIS = "hil.analysis.diagnosis"
-DEBTS = {
-    *((_DIAGNOSIS, f"{_DIAGNOSIS}.{room}") for room in ("data", "fit", "search", "tell")),
-    *((f"{_DIAGNOSIS}.{room}", _DIAGNOSIS) for room in ("data", "fit", "search", "tell")),
-    (f"{_DIAGNOSIS}.fit", f"{_DIAGNOSIS}.data"),
-    *((f"{_DIAGNOSIS}.search", f"{_DIAGNOSIS}.{room}") for room in ("data", "fit")),
-    *((f"{_DIAGNOSIS}.tell", f"{_DIAGNOSIS}.{room}") for room in ("data", "fit", "search")),
-    ("hil.plant.closed_loop", "hil.plant"),
-}
-
 
 def imported_by(file: Path) -> Iterator[str]:
     """Names of modules, and of what is taken from them."""
@@ -57,8 +45,7 @@ def crossings(top: str, root: Path = ROOT) -> set[tuple[str, str]]:
 
 def test_private_modules_are_not_imported_across_packages() -> None:
     found = set().union(*(crossings(top) for top in PACKAGES))
-    assert found - DEBTS == set(), "import from the package, or make the module public"
-    assert DEBTS - found == set(), "paid: take it off the list"
+    assert found == set(), "import from the package, or make the module public"
 
 
 def test_a_crossing_is_seen(tmp_path: Path) -> None:
