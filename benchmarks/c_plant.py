@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from benchmarks.answers import OtherAnswerError
-from hil.plant import _slots
+from hil.plant import slots
 
 Array = npt.NDArray[np.float64]
 SOURCE = Path(__file__).with_name("plant.c")
@@ -20,7 +20,7 @@ SOURCE = Path(__file__).with_name("plant.c")
 
 def header() -> str:
     """slots.h: where each number stands in the vector, under its name in the table."""
-    places = enumerate(_slots.SLOTS.names)
+    places = enumerate(slots.SLOTS.names)
     return "".join(f"#define AT_{name.replace('.', '_')} {place}\n" for place, name in places)
 
 
@@ -31,11 +31,11 @@ def refuse_more(vector: Array) -> None:
         OtherAnswerError: it would compute something else.
     """
     read = set(re.findall(r"\bAT_(\w+)", SOURCE.read_text("utf-8")))
-    neutral = _slots.pack_nothing()
-    neutral[_slots.KIND] = _slots.THREE_INERTIA
+    neutral = slots.pack_nothing()
+    neutral[slots.KIND] = slots.THREE_INERTIA
     more = [
         name
-        for place, name in enumerate(_slots.SLOTS.names)
+        for place, name in enumerate(slots.SLOTS.names)
         if name.replace(".", "_") not in read and vector[place] != neutral[place]
     ]
     if more:

@@ -16,7 +16,7 @@ from benchmarks.answers import largest_difference
 from benchmarks.c_plant import compiled_c, refuse_more
 from hil.core.model import Model, load_model
 from hil.engine.bench.bench_file import shipped
-from hil.plant import _kernel, _slots
+from hil.plant import kernel, slots
 
 SAMPLES, DT, STEP = 20_000, 1e-3, 1e-4
 #: How far rotor speeds of some 300 rad/s may differ where both computed the same, rad/s. In C sums are
@@ -95,13 +95,13 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as directory:
         run_c = compiled_c(Path(directory), DT, STEP)
         for title, model in (("three inertias", linear), ("default bench (wheel order)", with_order)):
-            vector = _slots.pack(model)
+            vector = slots.pack(model)
             refuse_more(vector)
-            out_c, out = _kernel.empty_output(SAMPLES), _kernel.empty_output(SAMPLES)
-            _kernel.run(torque, load, True, DT, vector, np.zeros(5), STEP, out)  # compiles
+            out_c, out = kernel.empty_output(SAMPLES), kernel.empty_output(SAMPLES)
+            kernel.run(torque, load, True, DT, vector, np.zeros(5), STEP, out)  # compiles
             c_ms = best_of(partial(run_c, torque, vector, out_c))
-            ms = best_of(partial(_kernel.run, torque, load, True, DT, vector, np.zeros(5), STEP, out))
-            for column in range(_kernel.OUTPUT_COLUMNS):
+            ms = best_of(partial(kernel.run, torque, load, True, DT, vector, np.zeros(5), STEP, out))
+            for column in range(kernel.OUTPUT_COLUMNS):
                 largest_difference(f"C, column {column}", out[:, column], out_c[:, column], 1e-4)
             difference = largest_difference("C -O3", out[:, 0], out_c[:, 0], SAME)
             print(f"{title + ', C -O3':42}{c_ms:9.2f}{1.0:8.2f}")

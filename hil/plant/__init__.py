@@ -4,13 +4,13 @@ from hil.plant._batch_simulation import ideal_sensors, simulate_many
 from hil.plant._linear import LinearSystem, linear_system, linear_system_of, system
 from hil.plant._motor_limits import refuse_motor_limits
 from hil.plant._replay import Start, gear_ratio_of, load_of, replay, simulate, start_of
-from hil.plant._slots import chain_numbers, pack
 from hil.plant._stability import LONGEST_STEP_S, is_stable, refuse_diverged_state, refuse_too_stiff
 from hil.plant.sensors import DELAY as SENSOR_DELAY
 from hil.plant.sensors import GAIN as SENSOR_GAIN
 from hil.plant.sensors import OFFSET as SENSOR_OFFSET
 from hil.plant.sensors import STEP as SENSOR_STEP
 from hil.plant.sensors import bench_sensor, sensor_of, sensor_response
+from hil.plant.slots import chain_numbers, pack
 
 __all__ = [
     "LONGEST_STEP_S",

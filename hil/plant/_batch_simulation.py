@@ -19,15 +19,15 @@ from hil.core.runtime.compiled import compiled, compiled_without_lock, inlined
 from hil.core.runtime.thread_map import map_on_threads, threads
 from hil.plant import _forces as F
 from hil.plant import _laws as L
-from hil.plant import _slots as P
-from hil.plant import _states as X
+from hil.plant import slots as P
+from hil.plant import states as X
 from hil.plant._functions import respond_many
 from hil.plant._held_linear import step_matrices
-from hil.plant._kernel import as_tuple
 from hil.plant._motion import acting_of, chain_of, motion_of, relative_speed
 from hil.plant._stick_slip import mean_friction
 from hil.plant._torque_path import over_samples
 from hil.plant._tuples import plus_product, plus_row, put
+from hil.plant.kernel import as_tuple
 from hil.plant.sensors import COLUMNS, GAIN, record
 
 Array = npt.NDArray[np.float64]

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from hil.core.runtime.compiled import inlined
 from hil.plant import _laws as L
-from hil.plant import _slots as P
-from hil.plant import _states as X
+from hil.plant import slots as P
+from hil.plant import states as X
 from hil.plant._motion import chain_of, motion_of, relative_speed
 from hil.plant._stick_slip import friction_torque
 from hil.plant._tuples import put

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from hil.core.chain import Chain
 from hil.core.channels import OUTPUTS
 from hil.core.model import TransferFunction
-from hil.plant import _slots as P
+from hil.plant import slots as P
 from hil.plant._torque_path import shape
 from hil.plant._transfer_function import respond
 from hil.plant.sensors import record

@@ -14,8 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.runtime.compiled import compiled
-from hil.plant import _slots as P
-from hil.plant import _states as X
+from hil.plant import slots as P
+from hil.plant import states as X
 from hil.plant._linear import SHAFT, TORQUE, system
 
 Array = npt.NDArray[np.float64]

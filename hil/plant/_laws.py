@@ -31,8 +31,8 @@ from numba import njit
 
 from hil.core.effects import STRANGERS, Effect
 from hil.core.runtime.compiled import depends_on
-from hil.plant import _slots as P
-from hil.plant import _states as X
+from hil.plant import slots as P
+from hil.plant import states as X
 from hil.plant._tuples import put
 
 depends_on(STRANGERS)

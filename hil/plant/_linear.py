@@ -14,9 +14,9 @@ import numpy.typing as npt
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.runtime.compiled import compiled, inlined
-from hil.plant import _slots as P
-from hil.plant import _states as X
-from hil.plant._slots import Table
+from hil.plant import slots as P
+from hil.plant import states as X
+from hil.plant.slots import Table
 
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -8,8 +8,8 @@ from hil.core.chain import Chain
 from hil.core.effects import Motion
 from hil.core.runtime.compiled import inlined
 from hil.plant import _laws as L
-from hil.plant import _slots as P
-from hil.plant import _states as X
+from hil.plant import slots as P
+from hil.plant import states as X
 
 
 class Acting(NamedTuple):

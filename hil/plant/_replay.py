@@ -13,7 +13,7 @@ from hil.core.effects import EFFECTS, Stage
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
-from hil.plant import _kernel, _slots
+from hil.plant import kernel, slots
 from hil.plant._functions import respond_many
 from hil.plant._stability import LONGEST_STEP_S, refuse_divergence, refuse_too_stiff
 from hil.plant.sensors import measured, sensor_of
@@ -66,8 +66,8 @@ def simulate(
     if model.kind == "transfer_function":
         channels = _functions(model, torque, sample_time_s, start, longest_step_s)
     else:
-        parameters = _slots.pack(model)
-        out = _kernel.empty_output(len(torque))
+        parameters = slots.pack(model)
+        out = kernel.empty_output(len(torque))
         before = torque[0] if start.motor_torque_nm is None else start.motor_torque_nm
         begin = np.array(
             [
@@ -79,12 +79,12 @@ def simulate(
             ]
         )
         load = np.zeros(len(torque)) if load_nm is None else np.ascontiguousarray(load_nm, dtype=float)
-        _kernel.run(torque, load, True, sample_time_s, parameters, begin, longest_step_s, out)
+        kernel.run(torque, load, True, sample_time_s, parameters, begin, longest_step_s, out)
         channels = {
-            "motor_torque_nm": out[:, _kernel.OUT_MOTOR_TORQUE].copy(),
-            "motor_speed_rad_s": out[:, _kernel.OUT_MOTOR_SPEED].copy(),
-            "wheel_speed_rad_s": out[:, _kernel.OUT_WHEEL_SPEED].copy(),
-            "shaft_torque_nm": out[:, _kernel.OUT_SHAFT_TORQUE].copy(),
+            "motor_torque_nm": out[:, kernel.OUT_MOTOR_TORQUE].copy(),
+            "motor_speed_rad_s": out[:, kernel.OUT_MOTOR_SPEED].copy(),
+            "wheel_speed_rad_s": out[:, kernel.OUT_WHEEL_SPEED].copy(),
+            "shaft_torque_nm": out[:, kernel.OUT_SHAFT_TORQUE].copy(),
         }
     return measured(model, channels, sample_time_s)
 
@@ -201,7 +201,7 @@ def _functions(
         acting = _torque_path(path, torque, dt, longest_step_s)
     begin = np.array([[start.motor_speed_rad_s, start.wheel_speed_rad_s, start.shaft_torque_nm]])
     sensors = np.stack([sensor_of(model.with_effects(), name) for name in OUTPUTS])[None]  # they come later
-    shown = respond_many(model.transfer_functions, _slots.pack(model)[None], torque, dt, begin, sensors, 1)[0]
+    shown = respond_many(model.transfer_functions, slots.pack(model)[None], torque, dt, begin, sensors, 1)[0]
     channels = {
         name: np.ascontiguousarray(shown[:, column])
         for column, name in enumerate(OUTPUTS)

@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from hil.core.errors import BadInputError
 from hil.core.model import Model
-from hil.plant import _slots as P
-from hil.plant import _states as X
+from hil.plant import slots as P
+from hil.plant import states as X
 from hil.plant._linear import system
 
 Array = npt.NDArray[np.float64]

@@ -6,7 +6,7 @@ import math
 
 from hil.core.runtime.compiled import compiled
 from hil.plant import _laws as L
-from hil.plant._kernel import as_tuple
+from hil.plant.kernel import as_tuple
 
 
 @compiled

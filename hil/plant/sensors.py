@@ -15,7 +15,7 @@ from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.runtime.compiled import compiled, inlined
-from hil.plant._slots import Table
+from hil.plant.slots import Table
 
 Array = npt.NDArray[np.float64]
 

@@ -26,8 +26,8 @@ from hil.core.errors import BadInputError
 from hil.core.runtime.compiled import chosen_by_type, inlined
 from hil.plant import _equations as E
 from hil.plant import _laws as L
-from hil.plant import _slots as P
-from hil.plant import _states as X
+from hil.plant import slots as P
+from hil.plant import states as X
 from hil.plant._motion import acting_of, chain_of
 from hil.plant._tuples import put
 

@@ -12,7 +12,7 @@ from benchmarks.answers import OtherAnswerError, largest_difference
 from benchmarks.c_plant import compiled_c, header, refuse_more
 from hil.core.model import EffectUse, load_model
 from hil.engine.bench.bench_file import shipped
-from hil.plant import _kernel, _slots
+from hil.plant import kernel, slots
 
 SAMPLES, DT, STEP = 300, 1e-3, 1e-4
 
@@ -43,19 +43,19 @@ def test_the_difference_is_in_the_unit_or_a_share() -> None:
 
 def test_every_slot_has_its_place_in_the_header() -> None:
     places = dict(line.split()[1:] for line in header().splitlines())
-    assert len(places) == len(_slots.SLOTS)
-    assert places["AT_gear_ratio"] == str(_slots.GEAR_RATIO)
-    order = _slots.place("wheel_order_disturbance", "order")
+    assert len(places) == len(slots.SLOTS)
+    assert places["AT_gear_ratio"] == str(slots.GEAR_RATIO)
+    order = slots.place("wheel_order_disturbance", "order")
     assert places["AT_wheel_order_disturbance_order"] == str(order)
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 def test_c_and_kernel_compute_the_same(tmp_path: Path) -> None:
-    vector = _slots.pack(load_model(shipped("three_inertia.toml")))
+    vector = slots.pack(load_model(shipped("three_inertia.toml")))
     refuse_more(vector)
     torque, load = np.full(SAMPLES, 40.0), np.zeros(SAMPLES)
-    ours, others = _kernel.empty_output(SAMPLES), _kernel.empty_output(SAMPLES)
-    _kernel.run(torque, load, True, DT, vector, np.zeros(5), STEP, ours)
+    ours, others = kernel.empty_output(SAMPLES), kernel.empty_output(SAMPLES)
+    kernel.run(torque, load, True, DT, vector, np.zeros(5), STEP, ours)
     compiled_c(tmp_path, DT, STEP)(torque, vector, others)
     assert np.max(np.abs(ours[:, 0])) > 1.0
     assert largest_difference("C", ours, others, 1e-6) < 1e-6
@@ -63,10 +63,10 @@ def test_c_and_kernel_compute_the_same(tmp_path: Path) -> None:
 
 def test_what_the_c_side_does_not_have_is_refused() -> None:
     model = load_model(shipped("three_inertia.toml"))
-    vector = _slots.pack(model.with_effects(EffectUse("backlash", {"half_gap_rad": 0.02})))
+    vector = slots.pack(model.with_effects(EffectUse("backlash", {"half_gap_rad": 0.02})))
     with pytest.raises(OtherAnswerError, match=r"plant.c has no backlash.half_gap_rad"):
         refuse_more(vector)
-    vector = _slots.pack(model.with_effects())
-    vector[_slots.KIND] = _slots.TWO_INERTIA
+    vector = slots.pack(model.with_effects())
+    vector[slots.KIND] = slots.TWO_INERTIA
     with pytest.raises(OtherAnswerError, match="kind"):
         refuse_more(vector)

@@ -9,10 +9,10 @@ import numpy.typing as npt
 
 from hil.core.model import Model
 from hil.plant import LONGEST_STEP_S, bench_sensor, refuse_diverged_state, refuse_too_stiff
-from hil.plant import _kernel as K
-from hil.plant import _slots as P
-from hil.plant import _states as X
+from hil.plant import kernel as K
 from hil.plant import sides as S
+from hil.plant import slots as P
+from hil.plant import states as X
 from hil.plant.closed_loop import drive as D
 from hil.plant.closed_loop import tick as T
 

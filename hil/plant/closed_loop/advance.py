@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hil.core.runtime.compiled import compiled, uncounted
-from hil.plant import _kernel as K
+from hil.plant import kernel as K
 from hil.plant.closed_loop.tick import tick
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from hil.core.runtime.compiled import compiled
-from hil.plant import _kernel as K
-from hil.plant import _slots as P
-from hil.plant import _states as X
+from hil.plant import kernel as K
 from hil.plant import sides as S
+from hil.plant import slots as P
+from hil.plant import states as X
 from hil.plant.closed_loop import drive as D
 from hil.plant.controller import memory as M
 from hil.plant.controller.control import control

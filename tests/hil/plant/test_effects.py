@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
 from hil.plant import Start, ideal_sensors, pack, simulate, simulate_many
-from hil.plant._slots import place
+from hil.plant.slots import place
 
 DT = 1e-3
 THREE = Model(

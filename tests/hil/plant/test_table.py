@@ -4,8 +4,8 @@ import pytest
 
 from hil.core.effects import EFFECTS
 from hil.core.model import parameter_names
-from hil.plant._slots import SLOTS, Table
-from hil.plant._states import LINEAR_STATES, STATES
+from hil.plant.slots import SLOTS, Table
+from hil.plant.states import LINEAR_STATES, STATES
 
 
 def test_a_number_gets_the_next_place_and_stands_once():

@@ -11,7 +11,7 @@ from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model, model_from_dict
 from hil.plant import LONGEST_STEP_S, Start, pack, simulate
-from hil.plant import _kernel as K
+from hil.plant import kernel as K
 from tests.hil.plant.test_effects import DT, THREE, many, stepped
 
 P = THREE.parameters

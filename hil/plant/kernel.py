@@ -15,9 +15,9 @@ from numba.np.unsafe.ndarray import to_fixed_tuple
 from hil.core.runtime.compiled import chosen_by_type, compiled, inlined
 from hil.plant import _equations as E
 from hil.plant import _laws as L
-from hil.plant import _slots as P
-from hil.plant import _states as X
 from hil.plant import sides as S
+from hil.plant import slots as P
+from hil.plant import states as X
 from hil.plant._motion import acting_of, chain_of, relative_speed
 from hil.plant._tuples import plus, put
 

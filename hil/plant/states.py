@@ -6,7 +6,7 @@ Behind the wheel's angle stand what effects remember.
 
 from __future__ import annotations
 
-from hil.plant._slots import ACTING, Table
+from hil.plant.slots import ACTING, Table
 
 STATES = Table()
 _state = STATES.place
