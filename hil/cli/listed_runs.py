@@ -9,7 +9,7 @@ from rich.markup import escape
 
 from hil.app.run_list import FoundRun, FoundRuns, RunsWanted, find_runs
 from hil.cli.options.files import List
-from hil.cli.output import console, plain_table, print_json, warn
+from hil.cli.output import console, local_time, plain_table, print_json, warn
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable, share
 
@@ -86,7 +86,7 @@ def _print_table(found: FoundRuns, folder: Path, *, criterion: str) -> None:
 
 
 def _cells(run: FoundRun, *, criterion: str) -> list[str]:
-    started = _DASH if run.started is None else run.started.astimezone().isoformat(" ", "seconds")[:19]
+    started = local_time(run.started)
     style = _STYLE.get(run.verdict)
     verdict = escape(run.verdict)
     cells = [

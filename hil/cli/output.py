@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import datetime
 import logging
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -45,6 +46,11 @@ def print_json(value: Mapping[str, Any]) -> None:
 def console() -> Console:
     """Standard output for people; in a pipe wide enough not to break a table."""
     return Console(soft_wrap=False) if sys.stdout.isatty() else Console(width=140)
+
+
+def local_time(moment: datetime.datetime | None) -> str:
+    """A moment to the second in this machine's time zone; a dash for none."""
+    return "-" if moment is None else moment.astimezone().isoformat(" ", "seconds")[:19]
 
 
 def plain_table(title: str | None = None) -> Table:

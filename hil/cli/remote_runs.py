@@ -10,7 +10,7 @@ from rich.markup import escape
 
 from hil.api_schemas.run_list import LONGEST_PAGE, FoundRun, RunsWanted
 from hil.cli.options.files import List
-from hil.cli.output import console, plain_table, print_json
+from hil.cli.output import console, local_time, plain_table, print_json
 from hil.cli.remote_run import TOKEN
 from hil.client import Client
 from hil.core.errors import BadInputError
@@ -76,7 +76,7 @@ def _wanted(options: List, since: datetime.datetime | None, until: datetime.date
 
 def _cells(one: FoundRun, *, criterion: bool) -> list[str]:
     run = one.run
-    ended = _DASH if run.ended_at is None else run.ended_at.astimezone().isoformat(" ", "seconds")[:19]
+    ended = local_time(run.ended_at)
     cells = [str(run.id), run.plan, run.bench, run.dut or _DASH, run.state, run.verdict or _DASH, ended]
     if criterion:
         cells.append(_DASH if one.value is None else f"{one.value:.5g} {one.unit}".strip())
