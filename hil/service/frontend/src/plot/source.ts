@@ -38,13 +38,16 @@ export function useSource({ run, live, channels, shown, first, last }: Wanted): 
   const end = live ? Math.max(last, measured) : last;
   useEffect(() => {
     if (!live) return undefined;
-    let frame = 0, numbersMs = 0;
+    let frame = 0, numbersMs = 0, later = 0;
+    const showNumbers = () => {
+      later = 0;
+      numbersMs = performance.now();
+      stores.newest.value = recent.traces;
+    };
     const show = () => {
       frame = 0;
-      if (performance.now() - numbersMs > NUMBERS_MS) {
-        numbersMs = performance.now();
-        stores.newest.value = recent.traces;
-      }
+      // The last of them is shown as well: a run that waits sends nothing for minutes.
+      later ||= window.setTimeout(showNumbers, Math.max(0, NUMBERS_MS - (performance.now() - numbersMs)));
       if (!follows) return;
       stores.range.value = rangeOf(shown, first, Math.max(last, recent.last));
       stores.traces.value = recent.traces;
@@ -56,7 +59,7 @@ export function useSource({ run, live, channels, shown, first, last }: Wanted): 
     });
     const timer = setInterval(() => setMeasured(recent.last), AGAIN_MS);
     show();
-    return () => { stop(); clearInterval(timer); cancelAnimationFrame(frame); };
+    return () => { stop(); clearInterval(timer); clearTimeout(later); cancelAnimationFrame(frame); };
   }, [live, run, follows, follows ? (shown as { follow: number }).follow : 0, first]);
   const range = rangeOf(shown, first, end);
   const grows = live !== null && !follows && range.to >= end - 2 ? end : 0; // what is held may still be filling
