@@ -4,7 +4,6 @@ from hil.analysis.diagnosis._diagnose import diagnose
 from hil.analysis.diagnosis.data.gap import BANDS_HZ, CONDITIONS, ChannelGap, GapMap
 from hil.analysis.diagnosis.data.sanity import examine
 from hil.analysis.diagnosis.data.thresholds import LEAST_SAMPLES
-from hil.analysis.diagnosis.data.trace import unbroken
 from hil.analysis.diagnosis.search.thresholds import BOOTSTRAP_DRAWS
 from hil.analysis.diagnosis.tell.consequences import why_no_step
 from hil.analysis.diagnosis.tell.result import (
@@ -33,6 +32,5 @@ __all__ = [
     "Where",
     "diagnose",
     "examine",
-    "unbroken",
     "why_no_step",
 ]

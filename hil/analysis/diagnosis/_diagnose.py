@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis._asked import Asked
+from hil.analysis.diagnosis.by_likelihood import diagnosis_of
 from hil.analysis.diagnosis.data.grid import coarse_noise, grids
 from hil.analysis.diagnosis.data.noise import cancelling, rising, stated_noise
 from hil.analysis.diagnosis.data.sanity import Examined, examined
@@ -32,6 +33,7 @@ from hil.analysis.diagnosis.tell.confidence import Sure, drop_of
 from hil.analysis.diagnosis.tell.judged import Judged
 from hil.analysis.diagnosis.tell.result import INTERRUPTED, OUT_OF_TIME, Diagnosis, Verdict
 from hil.analysis.diagnosis.tell.verdict import verdict_of
+from hil.analysis.missing_effects import explain_gap
 from hil.analysis.plausible import refuse_same_data, within_floating_point
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
@@ -81,7 +83,49 @@ def diagnose(
     stated = stated_noise([*recordings, *holdout])
     asked = Asked.checked({**stated, **(noise or {})}, least or {}, at_most_s)
     with within_floating_point(", ".join(str(r.source) for r in recordings)):
-        return _diagnosed(model, recordings, holdout, asked, show)
+        found, notes = _diagnosed(model, recordings, holdout, asked, show)
+        if model.transfer_functions or found.unfinished or not leaves_more_than_noise(found):
+            return found
+        return _judged_again(found, notes, model, recordings, holdout, asked, show)
+
+
+def leaves_more_than_noise(found: Diagnosis) -> bool:
+    """Whether what was found is no explanation to the noise: its names are then no more than candidates."""
+    return bool(found.verdict == "unknown" or found.open_channels or found.held_out_open)
+
+
+def _judged_again(
+    found: Diagnosis,
+    notes: Sequence[str],
+    model: Model,
+    recordings: Sequence[Recording],
+    holdout: Sequence[Recording],
+    asked: Asked,
+    show: Callable[[str], None],
+) -> Diagnosis:
+    """What one likelihood, in which a misfit counts with its own correlation, says of the same recordings.
+
+    The search judges a name by how much of the base's gap it closes, which far from the noise is true of
+    whatever brakes a base that runs away (docs/decisions/0031). Without a name of the likelihood's own an
+    `unknown` stays what it is.
+    """
+    ends = time.process_time() + asked.at_most_s
+
+    def show_in_time(text: str) -> None:
+        if time.process_time() > ends:
+            raise OutOfTimeError
+        show(text)
+
+    try:
+        outcome = explain_gap(model, recordings, holdout, noise=asked.noise, show=show_in_time)
+        other = diagnosis_of(outcome, model, least=asked.least, considered=found.considered, notes=notes)
+    except KeyboardInterrupt:
+        return replace(found, unfinished=INTERRUPTED)
+    except OutOfTimeError:
+        return replace(found, unfinished=OUT_OF_TIME)
+    if other.verdict == "named" or found.verdict == "named":
+        return replace(other, seconds=found.seconds + other.seconds)
+    return replace(found, seconds=found.seconds + other.seconds)
 
 
 def _diagnosed(
@@ -90,10 +134,12 @@ def _diagnosed(
     holdout: Sequence[Recording],
     asked: Asked,
     show: Callable[[str], None],
-) -> Diagnosis:
+) -> tuple[Diagnosis, list[str]]:
+    """What the search finds, and notes on the data."""
     began = time.perf_counter()
     show("reading the noise")
-    base, problem, held, rounded, notes = _made_ready(model, recordings, holdout, asked)
+    base, problem, held, rounded, on_data = _made_ready(model, recordings, holdout, asked)
+    notes = [*on_data]
     found, unfinished = _searched(problem, base, rounded, show)
     problem.allowance.lift()
     if unfinished == OUT_OF_TIME:
@@ -113,7 +159,7 @@ def _diagnosed(
     if problem.functions and verdict == "unknown":
         notes.append(ASK_FOR_CHAIN)
     judged = Judged(problem, found, verdict, held, by_chance, asked.least, unfinished, sure)
-    return judged.diagnosis(rounded, notes, time.perf_counter() - began)
+    return judged.diagnosis(rounded, notes, time.perf_counter() - began), on_data
 
 
 def _with_care(problem: Problem, found: Found) -> Problem:

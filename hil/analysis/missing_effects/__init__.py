@@ -4,6 +4,6 @@ docs/explanation/how-a-name-is-found.md has its equations and their sources.
 """
 
 from hil.analysis.missing_effects._explain import explain_gap
-from hil.analysis.missing_effects._outcome import Curve, Gap, Named, Outcome
+from hil.analysis.missing_effects._outcome import Curve, Gap, Named, Outcome, Replay
 
-__all__ = ["Curve", "Gap", "Named", "Outcome", "explain_gap"]
+__all__ = ["Curve", "Gap", "Named", "Outcome", "Replay", "explain_gap"]

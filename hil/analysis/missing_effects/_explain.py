@@ -13,7 +13,7 @@ from hil.analysis.missing_effects._fit import Point, point_at, with_better_start
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._noise import proven_noise
 from hil.analysis.missing_effects._odds import Candidate
-from hil.analysis.missing_effects._outcome import Gap, Outcome
+from hil.analysis.missing_effects._outcome import Gap, Outcome, Replay
 from hil.analysis.missing_effects._problem import Problem, problem_of
 from hil.analysis.missing_effects._search import Search, search
 from hil.analysis.missing_effects._series import series_of
@@ -62,6 +62,7 @@ def explain_gap(
             done,
             shown.left,
             lambda best: (shown.gaps(problem, best), shown.gaps(unseen, best) if holdout else {}),
+            lambda best: (shown.replays(problem, best), shown.replays(unseen, best) if holdout else ()),
         ),
         tuple(note for one in series for note in one.notes),
         time.perf_counter() - began,
@@ -102,6 +103,13 @@ class _Shown:
             for i, name in enumerate(OUTPUTS)
             if np.isfinite(spread[i])
         }
+
+    def replays(self, problem: Problem, best: Candidate) -> tuple[Replay, ...]:
+        """Each recording with the starts that suit the base and the best hypothesis."""
+        base = self.point(problem, Hypothesis(problem.model, dict(problem.model.parameters)))
+        better = self.point(problem, best.point.hypothesis)
+        pairs = zip(problem.series, base.starts, better.starts, strict=True)
+        return tuple(Replay(*one) for one in pairs)
 
 
 def _mean(values: Array) -> Array:

@@ -18,6 +18,7 @@ import numpy.typing as npt
 from hil.analysis.missing_effects._hypothesis import Coordinate, Hypothesis
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._spectrum import Powers, powers_of
+from hil.core.model import Model
 
 Array = npt.NDArray[np.float64]
 
@@ -75,6 +76,16 @@ class Linearised:
             if one.term == term and one.name == name:
                 return float(abs(one.slope(0.0)) * np.sqrt(max(self.covariance[index, index], 0.0)))
         return float("nan")
+
+    def drawn(self, count: int) -> tuple[Model, ...]:
+        """Models that the data allow as well, by the covariance of the numbers; the same ones every time."""
+        if not self.coordinates:
+            return ()
+        values, axes = np.linalg.eigh(self.covariance)
+        normal = np.random.default_rng(0).standard_normal((count, len(values)))
+        moves = normal * np.sqrt(np.maximum(values, 0.0)) @ axes.T
+        moves = np.clip(moves, *bounds_of(self.coordinates))
+        return tuple(self.point.hypothesis.moved(self.coordinates, move).model() for move in moves)
 
 
 def point_at(problem: Problem, hypothesis: Hypothesis, starts: Sequence[Array] | None = None) -> Point:

@@ -8,7 +8,10 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.missing_effects._series import Series
+from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse, Model
+from hil.plant import gear_ratio_of, pack, sensor_of, simulate_many
 
 Array = npt.NDArray[np.float64]
 Verdict = Literal["named", "none", "unknown"]
@@ -16,13 +19,17 @@ Verdict = Literal["named", "none", "unknown"]
 
 @dataclass(frozen=True)
 class Named:
-    """A name with the probability that it is right; `alike` are names that the data cannot tell from it."""
+    """A name with the probability that it is right; `alike` are names that the data cannot tell from it.
+
+    `model` is the hypothesis that a name is taken from; None where it is that of the outcome.
+    """
 
     use: EffectUse
     confidence: float
     standard_error: dict[str, float]
     alike: tuple[str, ...] = ()
     separating_test: str = ""
+    model: Model | None = None
 
     @property
     def id(self) -> str:
@@ -52,12 +59,32 @@ class Curve:
 
 
 @dataclass(frozen=True)
+class Replay:
+    """A stretch of a recording, and the states (5,) it begins in by the base and by the model given back."""
+
+    series: Series
+    base_start: Array
+    start: Array
+
+    def outputs(self, model: Model, start: Array) -> Array:
+        """What a model shows at every sample: n x 3, in the order of `OUTPUTS`."""
+        one = self.series
+        slots, sensors = pack(model), np.stack([sensor_of(model, channel) for channel in OUTPUTS])
+        angles = one.angles(gear_ratio_of(model) or 1.0)
+        shown = simulate_many(
+            slots[None], one.torque, one.dt, start[None], sensors[None], angles=angles, load_nm=one.load
+        )
+        return np.asarray(shown[0])
+
+
+@dataclass(frozen=True)
 class Outcome:
     """All that `explain_gap` has to say.
 
     `numbers` by name: base, found, standard error. `something_else` is what the model given back leaves of
     what the numbers alone leave beyond noise, on data not fitted where there are any (0 to 1). `curves` show
-    what stays.
+    what stays. `noise` (3,) is the proven standard deviation of one sample, NaN where a channel was not
+    recorded. `as_likely` are models drawn from what the fit knows of its numbers.
     """
 
     verdict: Verdict
@@ -72,6 +99,10 @@ class Outcome:
     curves: tuple[Curve, ...]
     notes: tuple[str, ...]
     seconds: float
+    noise: Array
+    as_likely: tuple[Model, ...]
+    fitted: tuple[Replay, ...]
+    held_out: tuple[Replay, ...]
 
     def as_json(self) -> dict[str, Any]:
         """The content of `diagnosis.json`."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis import unbroken
+from hil.analysis.stretches import excerpts, unbroken
 from hil.core.channels import INPUT, OUTPUTS, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.model import Model
@@ -84,7 +84,7 @@ def series_of(model: Model, recordings: Sequence[Recording]) -> list[Series]:
     found = []
     for recording in recordings:
         for part in unbroken(recording, model.load_input):
-            found.append(_series(model, part))
+            found += [_series(model, piece) for piece in excerpts(part)]
     if not any(one.has.any() for one in found):
         raise BadInputError(
             f"the recordings have none of {', '.join(OUTPUTS)}", fix="record at least a speed"

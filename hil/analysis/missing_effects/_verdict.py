@@ -22,7 +22,7 @@ from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised
 from hil.analysis.missing_effects._hypothesis import TOLERANCE, Hypothesis
 from hil.analysis.missing_effects._noise import rounding_step
 from hil.analysis.missing_effects._odds import Candidate, remains, weights_of
-from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Verdict
+from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Replay, Verdict
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._search import HALF, Search
 from hil.core.channels import OUTPUTS
@@ -36,6 +36,7 @@ _ALIKE = np.log(20.0)
 _LATE = {"actuator_lag": ("sensor_lag", "time_constant_s"), "dead_time": ("channel_skew", "delay_s")}
 _RIVALS = 3  # names that may take the place of another
 _SHOWN = 5  # alternatives
+_DRAWN = 40  # models, by which a figure of the new model is known
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,7 @@ class Judged:
     done: Search
     left: Callable[[Candidate], Array]
     gaps: Callable[[Candidate], tuple[dict[str, Gap], dict[str, Gap]]]
+    replays: Callable[[Candidate], tuple[tuple[Replay, ...], tuple[Replay, ...]]]
 
 
 def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
@@ -87,6 +89,7 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
         verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), something_else, numbers, far,
         *of.gaps(best), best.point.hypothesis.model(),
         curves_of(best.point.hypothesis, done.problem.series), notes, seconds,
+        done.problem.noise * np.sqrt(done.problem.series[0].block), at.drawn(_DRAWN), *of.replays(best),
     )  # fmt: skip
 
 
@@ -218,16 +221,19 @@ def _late_outputs(done: Search, rest: Hypothesis, use: EffectUse) -> Hypothesis 
 
 
 def _others(best: Candidate, candidates: Sequence[Candidate], weights: Array) -> list[Named]:
-    """Names that stand in other hypotheses only, by their weight."""
-    held: dict[str, tuple[float, EffectUse]] = {}
+    """Names that stand in place of one of the best hypothesis, by the weight of such hypotheses."""
+    held: dict[str, tuple[float, EffectUse, Candidate]] = {}
     for one, weight in zip(candidates, weights, strict=True):
+        if best.names and {*best.names} <= {*one.names}:
+            continue
         for label, use in zip(one.names, one.point.hypothesis.terms, strict=True):
             if label not in best.names:
-                held[label] = (held.get(label, (0.0, use))[0] + float(weight), use)
+                had, _, likelier = held.get(label, (0.0, use, one))
+                held[label] = (had + float(weight), use, max(likelier, one, key=lambda c: c.log_likelihood))
     ranked = sorted(held.values(), key=lambda pair: -pair[0])
     return [
-        Named(use, weight, {}, separating_test=EFFECTS[use.id].shown_by)
-        for weight, use in ranked
+        Named(use, weight, {}, separating_test=EFFECTS[use.id].shown_by, model=one.point.hypothesis.model())
+        for weight, use, one in ranked
         if weight > 0.0
     ]
 

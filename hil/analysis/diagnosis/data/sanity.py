@@ -36,9 +36,10 @@ from hil.analysis.diagnosis.data.thresholds import (
     TORQUE_OFF,
     TURNED_RAD,
 )
-from hil.analysis.diagnosis.data.trace import Trace, excerpts, trace_of, unbroken
+from hil.analysis.diagnosis.data.trace import Trace, trace_of
 from hil.analysis.diagnosis.data.turns import around, beyond_drift, drift_degree, pushes_of, refused_push
 from hil.analysis.plausible import refuse_implausible
+from hil.analysis.stretches import excerpts, unbroken
 from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
+from hil.analysis import stretches
 from hil.analysis.diagnosis.threshold import Means
 
 SPIKE_RANGES: Annotated[
@@ -250,17 +251,21 @@ SLOW_HZ: Annotated[
 ] = 0.1
 SHOWS: Annotated[float, Means("times the noise's power", "a band with less says nothing", "bad_input")] = 10.0
 
-LEAST_SAMPLES: Annotated[int, Means("samples", "a recording with fewer is refused", "bad_input")] = 200
+LEAST_SAMPLES: Annotated[int, Means("samples", "a recording with fewer is refused", "bad_input")] = (
+    stretches.LEAST_SAMPLES
+)
 LEAST_DURATION_S: Annotated[
     float,
     Means(
         "s", "a shorter recording is refused: fewer than some tens of block means say nothing", "bad_input"
     ),
-] = 0.15
+] = stretches.LEAST_DURATION_S
 MOST_SAMPLES: Annotated[
     int, Means("samples", "of a longer stretch excerpts are read: memory and time are bounded", "bad_input")
-] = 400_000
-EXCERPTS: Annotated[int, Means("stretches", "so many stand for a very long one", "bad_input")] = 10
+] = stretches.MOST_SAMPLES
+EXCERPTS: Annotated[int, Means("stretches", "so many stand for a very long one", "bad_input")] = (
+    stretches.EXCERPTS
+)
 FIRST_STAMPS: Annotated[
     int, Means("samples", "a straight line through the stamps begins with these", "trace")
 ] = 50
@@ -279,7 +284,9 @@ START_SAMPLES: Annotated[
 LITTLE_TORQUE: Annotated[
     float, Means("of the largest", "torque below it is none: a fed back torque is never quite zero", "trace")
 ] = 0.01
-GAP_SAMPLES: Annotated[float, Means("samples", "a longer pause is a gap", "bad_input")] = 20.0
+GAP_SAMPLES: Annotated[float, Means("samples", "a longer pause is a gap", "bad_input")] = (
+    stretches.GAP_SAMPLES
+)
 COARSE_SAMPLE_S: Annotated[
     float,
     Means("s", "with longer ones torque between samples is not known, and a note says so", "trace"),

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.data.gap import CONDITIONS, GapMap
+from hil.analysis.diagnosis.data.trace import Trace
 from hil.analysis.diagnosis.fit.fit import Fit
 from hil.analysis.diagnosis.fit.problem import Problem
 from hil.analysis.diagnosis.search.orders import order_lines
@@ -37,11 +39,23 @@ class Where:
 
 def where(problem: Problem, without: list[Array], with_: list[Array], before: GapMap, after: GapMap) -> Where:
     """Where the simulation without an effect and with it (n x 3 each recording) differ most."""
+    return where_changed(problem.traces, problem.noise, without, with_, before, after)
+
+
+def where_changed(
+    traces: Sequence[Trace],
+    noise: Array,
+    without: Sequence[Array],
+    with_: Sequence[Array],
+    before: GapMap,
+    after: GapMap,
+) -> Where:
+    """The same of recordings whose channels have `noise`, a standard deviation of a sample, (3,)."""
     power = np.zeros(3)
-    frequency = common_frequency([t.dt for t in problem.traces])
+    frequency = common_frequency([t.dt for t in traces])
     density = np.zeros(len(frequency))
-    for trace, a, b in zip(problem.traces, without, with_, strict=True):
-        change = np.where(trace.has, (b - a) / problem.noise, 0.0)
+    for trace, a, b in zip(traces, without, with_, strict=True):
+        change = np.where(trace.has, (b - a) / noise, 0.0)
         power += np.sum(change**2, axis=0)
         density += density_at(frequency, change, trace.dt, about_mean=False).sum(axis=1) * len(change)
     ranked = np.argsort(-power)

@@ -11,10 +11,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from hil.analysis.diagnosis import examine, unbroken
+from hil.analysis.diagnosis import examine
 from hil.analysis.diagnosis.data.noise import noise_levels, usable_noise
 from hil.analysis.diagnosis.data.trace import trace_of
 from hil.analysis.diagnosis.fit.problem import problem_of
+from hil.analysis.stretches import unbroken
 from hil.cli._app import guarded
 from hil.core.errors import BadInputError
 from hil.core.model import LOAD_INPUTS, Model, parameter_names, save_model

@@ -1,0 +1,60 @@
+"""What the search leaves above the noise is judged by one likelihood, and stated like any diagnosis."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from hil.analysis.diagnosis import INTERRUPTED, Diagnosis, diagnose
+from hil.core.effects import EFFECTS
+from tests.hil.analysis.missing_effects.turning_mass import base, recording
+
+_TORQUE_NM = 20.0
+
+
+@pytest.fixture(scope="module")
+def found() -> Diagnosis:
+    """Coulomb friction of 1.39 N m hidden, from a base without drag: whatever brakes it closes its gap."""
+    fit, held = (recording(0.54, 2.17, 1.39, 0.0, torque_nm=_TORQUE_NM, seed=seed) for seed in (0, 5))
+    return diagnose(base(0.54, 0.0), [fit], [held])
+
+
+def test_a_base_that_runs_away_gets_the_name_of_what_is_missing(found: Diagnosis) -> None:
+    assert found.verdict == "named"
+    assert [one.use.id for one in found.effects if one.use.id != "parameter_mismatch"] == ["coulomb_friction"]
+    assert found.effects[0].use.values["torque_nm"] == pytest.approx(1.39, rel=0.05)
+    assert found.effects[0].confidence > 0.9
+    assert "motor_speed_rad_s" in found.effects[0].where.channels
+
+
+def test_the_model_given_back_leaves_the_gap_that_is_stated(found: Diagnosis) -> None:
+    overlay = found.overlays[0]
+    error = overlay.measured[:, 0] - overlay.after[:, 0]
+    gap = np.sqrt(np.mean(error**2)) / np.std(overlay.measured[:, 0])
+    assert gap == pytest.approx(found.gap_after["motor_speed_rad_s"].gap, rel=1e-6)
+    assert found.gap_after["motor_speed_rad_s"].gap < 0.1 * found.gap_before["motor_speed_rad_s"].gap
+
+
+def test_it_is_written_like_any_diagnosis(found: Diagnosis) -> None:
+    whole = json.loads(json.dumps(found.as_json(), allow_nan=False))
+    assert {"verdict", "effects", "gap", "holdout_gap", "map", "open_channels", "notes"} <= {*whole}
+    optional = {one.name for one in EFFECTS["coulomb_friction"].parameters if one.optional}
+    assert not optional & {name for name, v in whole["effects"][0]["parameters"].items() if v == 0.0}
+
+
+def test_an_interrupt_of_the_second_judgement_keeps_what_the_search_found() -> None:
+    def interrupt(text: str) -> None:
+        if text == "numbers alone":  # the first words of the likelihood
+            raise KeyboardInterrupt
+
+    fit = recording(0.54, 2.17, 1.39, 0.0, torque_nm=_TORQUE_NM, seed=0)
+    found = diagnose(base(0.54, 0.0), [fit], show=interrupt)
+    assert found.unfinished == INTERRUPTED
+    assert found.effects
+
+
+def test_no_more_time_than_asked_for_is_taken() -> None:
+    fit = recording(0.54, 2.17, 1.39, 0.0, torque_nm=_TORQUE_NM, seed=0)
+    assert diagnose(base(0.54, 0.0), [fit], at_most_s=1e-3).unfinished
