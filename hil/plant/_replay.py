@@ -17,7 +17,7 @@ from hil.plant import kernel, slots
 from hil.plant._functions import respond_many
 from hil.plant._stability import LONGEST_STEP_S, refuse_divergence, refuse_too_stiff
 from hil.plant.sensors import measured, sensor_of
-from hil.plant.sides import refuse_separate
+from hil.plant.sides import LUMPED, form_of
 
 Array = npt.NDArray[np.float64]
 
@@ -58,16 +58,17 @@ def simulate(
 
     Returns:
         motor_torque_nm, motor_speed_rad_s, wheel_speed_rad_s and shaft_torque_nm, each of shape (n,)
-        (a transfer-function model gives those it has functions for).
+        (a transfer-function model gives those it has functions for). With separate wheels also speed and
+        torque of each side.
     """
-    refuse_separate(model, "a simulation")
     start = start or Start()
     torque = np.ascontiguousarray(torque_ref_nm, dtype=float)
     if model.kind == "transfer_function":
         channels = _functions(model, torque, sample_time_s, start, longest_step_s)
     else:
         parameters = slots.pack(model)
-        out = kernel.empty_output(len(torque))
+        beside = form_of(model)[len(LUMPED) :]
+        out = kernel.empty_output(len(torque), sides=bool(beside))
         before = torque[0] if start.motor_torque_nm is None else start.motor_torque_nm
         begin = np.array(
             [
@@ -79,14 +80,28 @@ def simulate(
             ]
         )
         load = np.zeros(len(torque)) if load_nm is None else np.ascontiguousarray(load_nm, dtype=float)
-        kernel.run(torque, load, True, sample_time_s, parameters, begin, longest_step_s, out)
+        kernel.run(torque, load, True, sample_time_s, parameters, begin, longest_step_s, out, beside)
         channels = {
             "motor_torque_nm": out[:, kernel.OUT_MOTOR_TORQUE].copy(),
             "motor_speed_rad_s": out[:, kernel.OUT_MOTOR_SPEED].copy(),
             "wheel_speed_rad_s": out[:, kernel.OUT_WHEEL_SPEED].copy(),
             "shaft_torque_nm": out[:, kernel.OUT_SHAFT_TORQUE].copy(),
         }
+        if beside:
+            channels |= _sides(out)
     return measured(model, channels, sample_time_s)
+
+
+def _sides(out: Array) -> dict[str, Array]:
+    """Channels of each side: half of what the shafts carry together, and half of what they differ by."""
+    speed, torque = out[:, kernel.OUT_WHEEL_SPEED], 0.5 * out[:, kernel.OUT_SHAFT_TORQUE]
+    apart, twisted = out[:, kernel.OUT_WHEEL_APART], out[:, kernel.OUT_SHAFT_APART]
+    return {
+        "wheel_speed_left_rad_s": speed + apart,
+        "wheel_speed_right_rad_s": speed - apart,
+        "shaft_torque_left_nm": torque + twisted,
+        "shaft_torque_right_nm": torque - twisted,
+    }
 
 
 def replay(model: Model, recording: Recording) -> Recording:

@@ -24,6 +24,8 @@ from hil.plant._tuples import plus, put
 # Columns of the kernel's output
 OUT_MOTOR_SPEED, OUT_WHEEL_SPEED, OUT_SHAFT_TORQUE, OUT_MOTOR_TORQUE, OUT_VEHICLE_SPEED, OUT_LOAD = range(6)
 OUTPUT_COLUMNS = 6
+#: Behind them, half of what the left wheel's speed and the left shaft's torque have more than the right's.
+OUT_WHEEL_APART, OUT_SHAFT_APART = OUTPUT_COLUMNS, OUTPUT_COLUMNS + 1
 # Columns of a start
 (
     START_MOTOR_SPEED,
@@ -186,12 +188,13 @@ def initial_state(p, motor_speed, wheel_speed, shaft_torque, motor_torque, wheel
 
 
 @compiled
-def run(torque, load, coupled, dt, vector, start, longest_step, out):  # type: ignore[no-untyped-def]
+def run(torque, load, coupled, dt, vector, start, longest_step, out, beside=()):  # type: ignore[no-untyped-def]
     """Replay `torque` (n samples, held for `dt` each) into `out` (n x OUTPUT_COLUMNS).
 
-    `load` (n) brakes the wheels; over a sample the mean of both its ends acts. `start` has the columns
-    START_…; its motor torque has acted before. `coupled` is given, and not always true, so that the bench's
-    closed loop and this share what is compiled.
+    `beside` are the states at rest that a model has beside those of the lumped axle (`sides.form_of`). `load`
+    (n) brakes the wheels; over a sample the mean of both its ends acts. `start` has the columns START_…; its
+    motor torque has acted before. `coupled` is given, and not always true, so that the bench's closed loop
+    and this share what is compiled.
     """
     p = as_tuple(vector)
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
@@ -200,7 +203,7 @@ def run(torque, load, coupled, dt, vector, start, longest_step, out):  # type: i
         late = 0.0
     before = start[START_MOTOR_TORQUE]
     slewed = L.limited(L.shaped(before, p), start[START_MOTOR_SPEED], p)
-    x, memories = initial_state(
+    lumped, memories = initial_state(
         p,
         start[START_MOTOR_SPEED],
         start[START_WHEEL_SPEED],
@@ -208,14 +211,21 @@ def run(torque, load, coupled, dt, vector, start, longest_step, out):  # type: i
         slewed,
         start[START_WHEEL_ANGLE],
     )
+    x = lumped + beside
     for k in range(torque.shape[0]):
         outputs(x, memories, p, slewed, coupled, load[k], out[k])
+        if out.shape[1] > OUTPUT_COLUMNS:
+            apart, twisted, _, _ = S.differences(x, memories, p, coupled)
+            out[k, OUT_WHEEL_APART], out[k, OUT_SHAFT_APART] = apart, twisted
         new = torque[k - whole] if k >= whole else before
         old = torque[k - whole - 1] if k > whole else before
-        mean = 0.5 * (load[k] + load[min(k + 1, load.shape[0] - 1)])
-        x, memories, slewed = sample(x, memories, p, slewed, old, new, late, dt, coupled, mean, longest_step)
+        side = 0.25 * (load[k] + load[min(k + 1, load.shape[0] - 1)])
+        brakes = S.loads(x, side, side)
+        x, memories, slewed = sample(
+            x, memories, p, slewed, old, new, late, dt, coupled, brakes, longest_step
+        )
 
 
-def empty_output(samples: int) -> np.ndarray:
-    """Room for the output of `run`."""
-    return np.empty((samples, OUTPUT_COLUMNS))
+def empty_output(samples: int, sides: bool = False) -> np.ndarray:
+    """Room for the output of `run`, with what the `sides` differ by behind it: OUT_…_APART."""
+    return np.empty((samples, OUTPUT_COLUMNS + 2 * sides))

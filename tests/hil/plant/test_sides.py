@@ -1,6 +1,7 @@
 """Both sides of an axle: the lumped one where they are alike, another integrator's where they are not."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,9 +9,11 @@ from scipy.integrate import solve_ivp
 
 from benchmarks.split_friction import SHAFT_LIMIT_NM
 from benchmarks.split_friction import ride as split_ride
+from hil.analysis.diagnosis import diagnose
 from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
+from hil.core.recording import Recording
 from hil.fmu import Axle
 from hil.plant import simulate
 from hil.plant.closed_loop import tick as T
@@ -46,8 +49,23 @@ def test_an_open_differential_gives_both_shafts_the_same_torque() -> None:
 
 
 def test_what_knows_both_together_only_refuses_it() -> None:
+    model = Model("three_inertia", P, (use("separate_wheels"),))
     with pytest.raises(BadInputError, match="both wheels together"):
-        simulate(Model("three_inertia", P, (use("separate_wheels"),)), TORQUE, 1e-3)
+        diagnose(model, [Recording({}, Path("none.csv"))])
+
+
+def test_a_replay_shows_each_side_as_the_bench_does() -> None:
+    effects = use("tyre_friction", **ROAD), use("separate_wheels", differential_friction_nm=40.0, **ICE)
+    shown = simulate(Model("three_inertia", P, effects), TORQUE, 1e-3)
+    found = rows(*effects)
+    for name, column in (
+        ("wheel_speed_left_rad_s", T.WHEEL_LEFT),
+        ("wheel_speed_right_rad_s", T.WHEEL_RIGHT),
+        ("shaft_torque_left_nm", T.SHAFT_LEFT),
+        ("shaft_torque_right_nm", T.SHAFT_RIGHT),
+    ):
+        assert np.array_equal(shown[name], found[:, column]), name
+    assert np.ptp(shown["wheel_speed_left_rad_s"] - shown["wheel_speed_right_rad_s"]) > 5.0
 
 
 @pytest.mark.parametrize("friction_nm", [40.0, 1e5])
