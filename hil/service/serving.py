@@ -26,6 +26,7 @@ from hil.execution.data_folder import alone_in, make_private, name_in
 from hil.service.api import Guarding, Rates, StopAddress, application, bounded
 from hil.service.archive import Archive
 from hil.service.jobs.campaigns import Simulating
+from hil.service.notices import NoticeSettings, NoticeWatch, Post
 from hil.service.service import Service
 from hil.service.stop_post import StopPost
 from hil.service.store import BenchStore, LogStore, TokenStore, in_turns, open_database
@@ -63,6 +64,7 @@ class ServeRequest:
         trusted_proxies: addresses of proxies before the service, which say for whom and how they ask.
         rate: requests that an address may send a second, in the long run.
         for_s: ends by itself after this many seconds.
+        notices: who gets which; None for nobody.
         ready: called with the URL once it answers.
     """
 
@@ -80,6 +82,7 @@ class ServeRequest:
     hosts: Sequence[str] = ()
     rate: float = 40.0
     for_s: float = math.inf
+    notices: NoticeSettings | None = None
     ready: Callable[[str], None] = lambda url: None
     stop: StopRequest = field(default_factory=StopRequest)
 
@@ -162,6 +165,9 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         asyncio.create_task(going_on(lambda: in_turns(service.watch_database()))),
         asyncio.create_task(going_on(lambda: in_turns(service.owners.follow(lambda: service.closing)))),
     ]
+    if request.notices is not None:
+        watch = NoticeWatch(service, Post(request.folder, request.notices))
+        besides.append(asyncio.create_task(going_on(lambda: in_turns(watch.work()))))
     service.campaigns.go_on()
     besides.append(asyncio.create_task(going_on(lambda: in_turns(service.sharing.work()))))
     if (keeper := service.keeper) is not None:

@@ -11,11 +11,14 @@ from typing import TYPE_CHECKING
 from hil.app.interrupts import EXIT_CODE
 from hil.cli.options.benches import Serve
 from hil.cli.output import print_json
-from hil.core.errors import BadInputError
+from hil.core.errors import BadInputError, BenchError
 from hil.engine import StopRequest
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from hil.service.jobs.campaigns import Simulating
+    from hil.service.notices import NoticeSettings
 
 
 def execute(options: Serve) -> int:
@@ -26,6 +29,7 @@ def execute(options: Serve) -> int:
     allow_host = options.allow_host or []
     for_s = options.for_s
     # The extra 'service' brings what they need.
+    from hil.service.notices import read_settings
     from hil.service.serving import ServeRequest, make_token, serve
 
     if for_s is not None and not for_s > 0:
@@ -40,6 +44,9 @@ def execute(options: Serve) -> int:
         else:
             print(f"# token of {made.token.name}, {made.token.role}; it is printed only once\n{made.secret}")
         return 0
+    notices = read_settings(options.notices) if options.notices is not None else None
+    if options.test_notices:
+        return _test_notices(data, notices, as_json=options.as_json)
     stop = StopRequest()
 
     def ready(url: str) -> None:
@@ -64,12 +71,32 @@ def execute(options: Serve) -> int:
         hosts=allow_host,
         rate=options.rate,
         for_s=math.inf if for_s is None else for_s,
+        notices=notices,
         ready=ready,
         stop=stop,
     )
     with stop.by_signals():
         serve(request)
     return EXIT_CODE if stop.times else 0
+
+
+def _test_notices(data: Path, notices: NoticeSettings | None, *, as_json: bool) -> int:
+    """Exit code 3 if somebody does not get it.
+
+    Raises:
+        BadInputError: nobody gets notices.
+    """
+    from hil.service.notices import Post, send_test
+
+    if notices is None:
+        raise BadInputError("--test-notices needs --notices FILE", where="--test-notices")
+    outcomes = send_test(Post(data, notices))
+    if as_json:
+        print_json({"sent": [{"to": name, "problem": problem} for name, problem in outcomes]})
+    else:
+        for name, problem in outcomes:
+            print(f"{name}: {problem or 'sent'}")
+    return BenchError.exit_code if any(problem for _, problem in outcomes) else 0
 
 
 def _simulating(workers: int | None, scheduler: str) -> Simulating:

@@ -278,6 +278,13 @@ class Serve:
     for_s: Annotated[float | None, typer.Option("--for", metavar="SECONDS", help="stop after this time")] = (
         None
     )
+    notices: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="TOML file of webhooks and mail for runs that end, fail or wait"),
+    ] = None
+    test_notices: Annotated[
+        bool, typer.Option("--test-notices", help="send a test to everyone in --notices, print it and exit")
+    ] = False
     add_token: Annotated[
         str,
         typer.Option(
