@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from hil.analysis.diagnosis import INTERRUPTED, Diagnosis, diagnose
+from hil.analysis.diagnosis.by_likelihood import diagnosis_of
+from hil.analysis.missing_effects import explain_gap
 from hil.core.effects import EFFECTS
 from tests.hil.analysis.missing_effects.turning_mass import base, recording
 
@@ -58,3 +60,14 @@ def test_an_interrupt_of_the_second_judgement_keeps_what_the_search_found() -> N
 def test_no_more_time_than_asked_for_is_taken() -> None:
     fit = recording(0.54, 2.17, 1.39, 0.0, torque_nm=_TORQUE_NM, seed=0)
     assert diagnose(base(0.54, 0.0), [fit], at_most_s=1e-3).unfinished
+
+
+def test_an_effect_smaller_than_what_is_worth_a_name_is_a_correction() -> None:
+    fit = recording(0.54, 2.17, 1.39, 0.0, torque_nm=_TORQUE_NM, seed=0)
+    outcome = explain_gap(base(0.54, 2.17), [fit])
+    named = diagnosis_of(outcome, base(0.54, 2.17), least={})
+    small = diagnosis_of(outcome, base(0.54, 2.17), least={"coulomb_friction": 2.0})
+    assert [one.use.id for one in named.effects] == ["coulomb_friction"]
+    assert small.verdict == "none"
+    assert small.effects == ()
+    assert small.parameter_updates["coulomb_friction.torque_nm"][1] == pytest.approx(1.39, rel=0.02)
