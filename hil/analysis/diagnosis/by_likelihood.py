@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,7 @@ from hil.analysis.diagnosis.data.gap import CONDITIONS, ChannelGap, GapMap, chan
 from hil.analysis.diagnosis.data.trace import Trace
 from hil.analysis.diagnosis.tell.consequences import consequences
 from hil.analysis.diagnosis.tell.corrections import as_corrections
+from hil.analysis.diagnosis.tell.given_back import NUMBERS_TRADE
 from hil.analysis.diagnosis.tell.held_out import HeldOut, furthest
 from hil.analysis.diagnosis.tell.named import clean, worth_naming
 from hil.analysis.diagnosis.tell.result import (
@@ -52,6 +53,10 @@ def diagnosis_of(
         notes: on the data.
     """
     fitted = _Shown.of(found.fitted, base, found.model, found.noise)
+    if found.verdict == "unknown" and any(one.gap > fitted.before[c].gap for c, one in fitted.after.items()):
+        return diagnosis_of(
+            _as_it_came(found, base), base, least=least, considered=considered, notes=(*notes, NUMBERS_TRADE)
+        )
     held = _Shown.of(found.held_out, base, found.model, found.noise)
     named = tuple(_named(found, one, fitted) for one in found.effects)
     small = [one for one in named if not worth_naming(one.use, fitted.traces, least, base)]
@@ -83,6 +88,19 @@ def diagnosis_of(
         open_channels=_open(fitted.after),
         held_out_open=unseen.open(verdict),
         worse=tuple(made_worse(fitted.map_before, fitted.map_after)),
+    )
+
+
+def _as_it_came(found: Outcome, base: Model) -> Outcome:
+    """An outcome without a name that gives the model back as it came: its numbers would only trade errors."""
+    return replace(
+        found,
+        model=base,
+        numbers={},
+        base_was_far=False,
+        as_likely=(),
+        fitted=tuple(replace(one, start=one.base_start) for one in found.fitted),
+        held_out=tuple(replace(one, start=one.base_start) for one in found.held_out),
     )
 
 

@@ -29,12 +29,19 @@ def proven_noise(series: Sequence[Series], stated: Mapping[str, float]) -> Array
         have = [one for one in series if one.has[column]]
         if not have:
             continue
-        white = np.median([_white(one.samples[:, column]) / np.sqrt(one.block) for one in have])
+        white = np.median([_white_of_blocks(one, column) for one in have])
         step = rounding_step(np.concatenate([one.samples[:, column] for one in have]))
         maker = stated.get(name, 0.0) / np.sqrt(have[0].block)
         digits = _DIGITS * np.sqrt(np.mean([np.mean(one.samples[:, column] ** 2) for one in have]))
         levels[column] = max(float(white), step / np.sqrt(12.0), maker, float(digits), 1e-12)
     return levels
+
+
+def _white_of_blocks(one: Series, column: int) -> float:
+    """White noise of block means: by readings; where samples lie between these, by the means."""
+    if one.even:
+        return _white(one.samples[:, column]) / float(np.sqrt(one.block))
+    return _white(one.measured[:, column])
 
 
 def _white(values: Array) -> float:

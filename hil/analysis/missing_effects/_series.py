@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -20,6 +21,7 @@ Array = npt.NDArray[np.float64]
 FIT_RATE_HZ = 250.0
 """Errors are averaged down to this rate: twice the bandwidth of anything mechanical in an axle."""
 _EVEN_SHARE = 0.05  # of a sample, by which stamps may be off their grid and still be taken as they are
+_USUAL = 0.95  # of the steps between uneven stamps are at most as long as a block
 _FIRST_SAMPLES = 5  # whose mean is the first guess of where a recording begins
 
 
@@ -29,7 +31,7 @@ class Series:
 
     `torque` is held over samples of `dt` seconds; `samples` (n x 3, in the order of `OUTPUTS`) has NaN where
     a channel was not recorded; `measured` (blocks x 3) are means of `block` samples; `load` brakes the wheels
-    in N m, None where the model takes none.
+    in N m, None where the model takes none. `even`: samples are readings, else interpolated between them.
     """
 
     name: str
@@ -41,6 +43,7 @@ class Series:
     load: Array | None
     first_wheel_angle_rad: float
     notes: tuple[str, ...]
+    even: bool = True
 
     @property
     def has(self) -> npt.NDArray[np.bool_]:
@@ -111,6 +114,8 @@ def _series(model: Model, recording: Recording) -> Series:
         if name in recording:
             samples[:, column] = on_grid(recording[name])
     block = max(1, round(1.0 / (FIT_RATE_HZ * dt)))
+    if not even:  # a block without a reading of its own would show what was interpolated
+        block = max(block, math.ceil(float(np.quantile(np.diff(time), _USUAL)) / dt))
     blocks = len(grid) // block
     load = load_of(model, recording)
     return Series(
@@ -123,4 +128,5 @@ def _series(model: Model, recording: Recording) -> Series:
         None if load is None else on_grid(load),
         float(recording[WHEEL_ANGLE][0]) if WHEEL_ANGLE in recording else 0.0,
         () if even else (f"{recording.source.stem}: uneven time stamps, put on a grid of {dt * 1e3:.4g} ms",),
+        even,
     )

@@ -84,7 +84,7 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
         verdict = "named"
     elif not best.names and done.problem.is_noise(best.point.errors):
         verdict = "none"
-    others = _others(best, candidates, weights)
+    others = _others(of, best, candidates, weights)
     return Outcome(
         verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), something_else, numbers, far,
         *of.gaps(best), best.point.hypothesis.model(),
@@ -220,8 +220,11 @@ def _late_outputs(done: Search, rest: Hypothesis, use: EffectUse) -> Hypothesis 
     return rest
 
 
-def _others(best: Candidate, candidates: Sequence[Candidate], weights: Array) -> list[Named]:
-    """Names that stand in place of one of the best hypothesis, by the weight of such hypotheses."""
+def _others(of: Judged, best: Candidate, candidates: Sequence[Candidate], weights: Array) -> list[Named]:
+    """Names that stand in place of one of the best hypothesis, by the weight of such hypotheses.
+
+    Where that has no name, times the share of the misfit that goes with them, as of a name that is given.
+    """
     held: dict[str, tuple[float, EffectUse, Candidate]] = {}
     for one, weight in zip(candidates, weights, strict=True):
         if best.names and {*best.names} <= {*one.names}:
@@ -231,11 +234,13 @@ def _others(best: Candidate, candidates: Sequence[Candidate], weights: Array) ->
                 had, _, likelier = held.get(label, (0.0, use, one))
                 held[label] = (had + float(weight), use, max(likelier, one, key=lambda c: c.log_likelihood))
     ranked = sorted(held.values(), key=lambda pair: -pair[0])
-    return [
-        Named(use, weight, {}, separating_test=EFFECTS[use.id].shown_by, model=one.point.hypothesis.model())
-        for weight, use, one in ranked
-        if weight > 0.0
-    ]
+    found = []
+    for weight, use, one in ranked[:_SHOWN]:
+        share = 1.0 if best.names else 1.0 - _remains(of, best, one)
+        if weight * share > 0.0:
+            model = one.point.hypothesis.model()
+            found.append(Named(use, weight * share, {}, (), EFFECTS[use.id].shown_by, model))
+    return sorted(found, key=lambda one: -one.confidence)
 
 
 def _numbers(at: Linearised, asked: Model) -> dict[str, tuple[float, float, float]]:
