@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from hil.app.run_inputs import BENCH, PLAN, inputs_of, stored_paths
+from hil.app.run_inputs import BENCH, PLAN, inputs_of
 from hil.core.errors import BadInputError
-from hil.core.files import make_directory, write_atomically
-from hil.core.recording import Recording, read_recording, run_of
+from hil.core.files import make_directory, sha256_of, write_atomically
+from hil.core.recording import SOURCE, Recording, read_recording, run_of
 from hil.core.result import RunResult
 from hil.core.runtime.versions import versions
 from hil.engine import RECORDING, load_bench
+
+#: Where the files of an earlier run are unpacked: they are gone when the new run has ended.
+UNPACKED = "hil-again-"
 
 
 @dataclass(frozen=True)
@@ -21,9 +25,11 @@ class EarlierRun:
     Attributes:
         bench: its bench file; None where the bench was hardware, whose file of today counts.
         values: of the plan's variables.
-        changes: what differs today, a sentence each.
+        changes: what differs today, and what is known of the earlier run's files, a sentence each.
+        recording: where it was read from.
     """
 
+    recording: Path
     plan: Path
     bench: Path | None
     values: dict[str, float]
@@ -53,11 +59,12 @@ def earlier_run(run: Path, folder: Path) -> EarlierRun:
         write_atomically(folder / name, content)
     simulated = load_bench(str(folder / BENCH)).simulation is not None
     return EarlierRun(
+        path,
         folder / PLAN,
         folder / BENCH if simulated else None,
         {one.name: one.value for one in result.variables},
         result,
-        (*_newer_software(recording), *_changed_files(recording, files)),
+        (*_of_the_run(recording, result), *_newer_software(recording), *_changed_files(recording)),
     )
 
 
@@ -65,23 +72,31 @@ def compared_in_words(before: RunResult, now: RunResult) -> str:
     """How far the criteria of the run are from those of the earlier one, in a sentence."""
     values = {one.id: one.value for one in before.criteria}
     both = [
-        (one, then)
+        (one.id, then, one.value)
         for one in now.criteria
         if (then := values.get(one.id)) is not None and one.value is not None
     ]
     if not both:
         return "no criterion has a value in both runs"
-    moved = [(abs(one.value - then), one, then) for one, then in both if one.value != then]  # type: ignore[operator]
+    moved = [(id_, then, value) for id_, then, value in both if value != then]
     if not moved:
-        return f"all {len(both)} values are equal to those of the earlier run"
-    share, (_, one, then) = max(
-        ((distance / max(abs(then), 1e-300), (distance, one, then)) for distance, one, then in moved),
-        key=lambda entry: entry[0],
-    )
+        fewer = len(now.criteria) - len(both)
+        rest = f"; {fewer} more have a value in one of the two alone, or in none" if fewer else ""
+        return f"all {len(both)} values are equal to those of the earlier run{rest}"
+    id_, then, value = max(moved, key=lambda one: abs(one[2] - one[1]) / abs(one[1]) if one[1] else math.inf)
+    share = f" ({100 * abs(value - then) / abs(then):.2g} %)" if then else ""
     return (
-        f"{len(moved)} of {len(both)} values differ from the earlier run's, {one.id} most: "
-        f"{then:.5g} then, {one.value:.5g} now ({100 * share:.2g} %)"
+        f"{len(moved)} of {len(both)} values differ from the earlier run's, {id_} most: "
+        f"{then:.5g} then, {value:.5g} now{share}"
     )
+
+
+def _of_the_run(recording: Recording, result: RunResult) -> list[str]:
+    """What is wrong with the earlier run and its recording."""
+    found = [f"the earlier recording: {sentence}" for sentence in recording.damage]
+    if result.reason:
+        found.append(f"the earlier run did not get to its end: {result.reason}")
+    return found
 
 
 def _newer_software(recording: Recording) -> list[str]:
@@ -93,14 +108,22 @@ def _newer_software(recording: Recording) -> list[str]:
     ]
 
 
-def _changed_files(recording: Recording, files: dict[str, bytes]) -> list[str]:
-    """Files that plan and bench named, where they lie today with another content."""
-    found = []
-    for path in stored_paths(recording, set(files)):
-        try:
-            content = Path(path).read_bytes()
-        except OSError:
-            continue
-        if content != files[Path(path).name]:
-            found.append(f"{path} has changed since; the recorded one is used")
-    return found
+def _changed_files(recording: Recording) -> list[str]:
+    """Files of the run that lie today with another content where they lay then, or not at all."""
+    sources = {
+        Path(table["path"]): table.get("sha256")
+        for name, table in sorted(recording.metadata.items())
+        if name.startswith(SOURCE) and "path" in table
+    }
+    if not sources:
+        return ["where the files of the earlier run lay was not recorded: they are not compared with today's"]
+    if any(path.parent.name.startswith(UNPACKED) for path in sources):
+        return ["the earlier run was one of --again itself: its files are not compared with today's"]
+    return [sentence for path, digest in sources.items() if (sentence := _difference(path, digest))]
+
+
+def _difference(path: Path, digest: str | None) -> str:
+    """What is different of a file that had a SHA-256; '' if nothing is."""
+    if not path.is_file():
+        return f"{path} is not there any more; the recorded one is used"
+    return f"{path} has changed since; the recorded one is used" if sha256_of(path) != digest else ""

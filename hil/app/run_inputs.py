@@ -40,18 +40,16 @@ def inputs_of(recording: Recording) -> dict[str, bytes]:
         if name.startswith(("controller/", "device/"))
     }
     tables = parse_toml(bench, BENCH)
+    if MODEL not in stored and "simulation" in tables:
+        raise BadInputError(
+            "holds no model, as it is a replay: its run cannot be repeated",
+            where=str(recording.source),
+            fix="use the recording that was replayed",
+        )
     if MODEL in stored:
         files[_model_name(tables)] = stored[MODEL]
     paths = _paths([yaml.safe_load(plan), tables], set(files))
     return {**files, PLAN: _beside(plan, paths).encode(), BENCH: _beside(bench, paths).encode()}
-
-
-def stored_paths(recording: Recording, files: set[str]) -> list[str]:
-    """Paths by which the plan and the bench named these files when the run was made."""
-    stored = recording.attachments
-    return sorted(
-        set(_paths([yaml.safe_load(stored[PLAN]), parse_toml(stored[BENCH].decode(), BENCH)], files))
-    )
 
 
 def command_again(recording: Recording, folder: Path) -> str:

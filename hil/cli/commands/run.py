@@ -7,7 +7,7 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
-from hil.app.again import compared_in_words, earlier_run
+from hil.app.again import UNPACKED, EarlierRun, compared_in_words, earlier_run
 from hil.app.run import FinishedRun, RunSettings
 from hil.app.series import announce_series, repeated, run_series
 from hil.cli.inputs import all_choices, bench_or_own, named_values
@@ -47,7 +47,7 @@ def _execute_again(options: Run, run: Path) -> int:
     for option, given in {"a plan": options.plan, "--server": options.server}.items():
         if given:
             raise BadInputError(f"{option} does not go with --again", where="--again", fix="leave it out")
-    with tempfile.TemporaryDirectory(prefix="hil-again-") as folder:
+    with tempfile.TemporaryDirectory(prefix=UNPACKED) as folder:
         before = earlier_run(run, Path(folder))
         if before.bench is None and not options.bench:
             fix = "name the bench's file of today with --bench: limits and calibrations may have changed"
@@ -56,18 +56,20 @@ def _execute_again(options: Run, run: Path) -> int:
             complain("note", text)
         chosen = named_values(options.values or (), "--set")
         values = {name: f"{value!r}" for name, value in before.values.items()} | chosen
-        return _execute(
-            replace(
-                options,
-                plan=str(before.plan),
-                bench=options.bench or str(before.bench),
-                values=[f"{name}={value}" for name, value in values.items()],
-            ),
-            before.result,
+        unpacked = replace(
+            options,
+            plan=str(before.plan),
+            bench=options.bench or str(before.bench),
+            values=[f"{name}={value}" for name, value in values.items()],
         )
+        try:
+            return _execute(unpacked, before)
+        except BadInputError as error:  # the folder is gone when somebody reads of it
+            where = error.where.replace(folder, str(run))
+            raise BadInputError(error.what, where=where, fix=error.fix) from error
 
 
-def _execute(options: Run, before: RunResult | None = None) -> int:
+def _execute(options: Run, before: EarlierRun | None = None) -> int:
     choices = list(all_choices(options.values, options.controller))
     if options.server:
         _refuse_here_only(
@@ -97,6 +99,7 @@ def _execute(options: Run, before: RunResult | None = None) -> int:
         bench.source,
         *([Path(options.plan)] if Path(options.plan).is_file() else []),
         *([options.model] if options.model else []),
+        *([before.recording] if before is not None else []),
     ]
     settings = RunSettings(
         model=load_model(options.model) if options.model else None,
@@ -113,7 +116,7 @@ def _execute(options: Run, before: RunResult | None = None) -> int:
     with settings.execute(plans[0], bench, options.out) as run:
         _print_run(run.result, run.folder, show=options.show, as_json=options.as_json)
         if before is not None:
-            complain("note", compared_in_words(before, run.result))
+            complain("note", compared_in_words(before.result, run.result))
         return run.exit_code
 
 

@@ -33,6 +33,9 @@ VEHICLE = "vehicle"
 #: Metadata table with who answered for sensors whose calibration had run out.
 ACCEPTED_EXPIRY = "accepted expired calibration"
 
+#: Prefix of the metadata tables that say of an attachment where its file lay, and its SHA-256 there.
+SOURCE = "source/"
+
 
 def run_of(recording: Recording) -> RunResult | None:
     """The stored result; of a recording that was cut off, the segments as far as they were recorded.

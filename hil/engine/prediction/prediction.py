@@ -260,6 +260,9 @@ class _PredictedRecorder:
         """Keep a table."""
         self._metadata[name] = values
 
+    def store_source(self, name: str, path: Path) -> None:
+        """Nothing: nobody runs a prediction again."""
+
     def event(self, clock_s: float, kind: str, text: str) -> None:
         """Keep what happened at a time of the bench clock."""
         self._events.append(Event(self.recording_time(clock_s), kind, text))

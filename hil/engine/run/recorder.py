@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, MutableMapping, Sequence
 from pathlib import Path
 
@@ -11,8 +12,9 @@ import numpy.typing as npt
 from drivers import SampleAssembler, Samples, Stream
 from hil.core.can.frames import FrameBlock
 from hil.core.channels import TIME
-from hil.core.errors import BenchError
-from hil.core.recording import Event, Recording, RecordingWriter, read_as_written
+from hil.core.errors import BenchError, HilError
+from hil.core.files import sha256_of
+from hil.core.recording import SOURCE, Event, Recording, RecordingWriter, read_as_written
 from hil.core.result import StreamClock
 from hil.core.runtime.clock import utc
 
@@ -107,6 +109,12 @@ class Recorder:
             self._write_rows()
         self.writer.flush()
         self._between()
+
+    def store_source(self, name: str, path: Path) -> None:
+        """Say of an attachment where its file lies and what it is there: so a later change is seen."""
+        with contextlib.suppress(HilError):  # it came from elsewhere, or is gone already
+            table = {"path": str(path.resolve()), "sha256": sha256_of(path)}
+            self.writer.describe(f"{SOURCE}{name}", table)
 
     def event(self, clock_s: float, kind: str, text: str) -> None:
         """Record what happened at a time of the bench clock."""

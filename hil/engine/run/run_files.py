@@ -8,7 +8,7 @@ from pathlib import Path
 from hil.core.channels import CHANNELS
 from hil.core.files.toml_file import FORMAT
 from hil.core.model import model_to_toml
-from hil.core.recording import ACCEPTED_EXPIRY
+from hil.core.recording import ACCEPTED_EXPIRY, DEVICE
 from hil.core.result import AcceptedExpiry, RunResult
 from hil.core.runtime.versions import versions
 from hil.engine.bench.bench import Bench
@@ -36,6 +36,8 @@ def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench, started_
     inputs = _inputs(request, bench)
     for name, content in inputs.items():
         writer.attach(name, content)
+    for name, path in _sources(request, bench).items():
+        recorder.store_source(name, path)
     confirmed = {
         "prompts_confirmed_by": request.confirmed_by,
         "hazard_confirmed_by": request.hazard_confirmed_by,
@@ -89,6 +91,16 @@ def store_result(
     writer.describe("time", recorder.time_base())
     writer.describe("hashes", hashes(inputs | controllers | attachments))
     writer.close()
+
+
+def _sources(request: RunRequest, bench: Bench) -> dict[str, Path]:
+    """The files of `_inputs`, by the attachment's name."""
+    found = {"plan.yaml": request.plan.source, "bench.toml": request.bench.source}
+    if bench.model is not None and bench.model.source:
+        found["model.toml"] = Path(bench.model.source)
+    for key, table in bench.file.device_tables.items():
+        found |= {f"{DEVICE}{key}/{path.name}": path for path in table.files()}
+    return found
 
 
 def _inputs(request: RunRequest, bench: Bench) -> dict[str, bytes]:

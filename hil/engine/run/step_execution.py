@@ -69,7 +69,8 @@ class BenchConductor:
     def set_controller(self, file: Path) -> None:
         """Write a controller to the RMCU (torque off) and read it back."""
         self._check.set_controller(file)
-        if not file.is_absolute() and file.name in self.made:
+        made = not file.is_absolute() and file.name in self.made
+        if made:
             file = self._out / file
         controller = load_controller(file)
         self._bench.rmcu.write_controller(controller)
@@ -77,6 +78,8 @@ class BenchConductor:
         if file.stem not in self.controllers:
             text = toml_text(file)
             self.controllers[file.stem] = text
+            if not made:
+                self._recorder.store_source(f"controller/{file.stem}.toml", file)
             self._recorder.writer.attach(f"controller/{file.stem}.toml", text.encode())
         self._event(
             "controller", f"{controller.name} ({controller.stabilization} stabilization) written, read back"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -27,6 +28,7 @@ def test_it_is_the_same_run_without_its_files_and_says_what_has_changed(tmp_path
     (tmp_path / "soft.toml").write_text(controller.replace("name =", "# changed\nname ="))
     done = hil("run", "--again", first, "--out", tmp_path / "second", "--json")
     assert "soft.toml has changed since; the recorded one is used" in done.stderr
+    assert "tip.yaml is not there any more; the recorded one is used" in done.stderr
     assert "values are equal to those of the earlier run" in done.stderr
     before = json.loads((first / "result.json").read_text())
     assert json.loads(done.stdout)["criteria"] == before["criteria"]
@@ -35,6 +37,53 @@ def test_it_is_the_same_run_without_its_files_and_says_what_has_changed(tmp_path
         "run", "--again", first / "recording.mcap", "--set", "torque_nm=120", "--out", tmp_path / "third"
     )
     assert "values differ from the earlier run's" in other.stderr
+    again = hil("run", "--again", tmp_path / "third", "--out", tmp_path / "fourth")
+    assert "was one of --again itself" in again.stderr
+    misspelt = hil("run", "--again", first, "--set", "torque=200", code=2)
+    assert "hil-again" not in misspelt.stderr
+
+
+@pytest.mark.slow
+def test_whatever_lies_beside_the_plan_is_compared_and_the_run_itself_is_never_replaced(
+    tmp_path: Path,
+) -> None:
+    """Files named without a folder, the plan and bench themselves, the model, descriptions of devices."""
+    for name, source in (
+        ("c.toml", "test_plans/library/controllers/phase_stabilization.toml"),
+        ("bench.toml", "benches/sim.toml"),
+        ("rmcu.dbc", "benches/rmcu.dbc"),
+        ("rcs_dyno.eds", "benches/rcs_dyno.eds"),
+        ("m.toml", "benches/three_inertia.toml"),
+    ):
+        (tmp_path / name).write_text((ROOT / source).read_text())
+    bench = (tmp_path / "bench.toml").read_text()
+    (tmp_path / "bench.toml").write_text(re.sub(r'model = "[^"]*"', 'model = "m.toml"', bench))
+    (tmp_path / "tip.yaml").write_text(PLAN.replace("phase_stabilization.toml", "c.toml"))
+    first = tmp_path / "first"
+    command = ("run", tmp_path / "tip.yaml", "--set", "torque_nm=100", "--bench", tmp_path / "bench.toml")
+    hil(*command, "--out", first)
+    same = hil("run", "--again", first, "--out", tmp_path / "same")
+    assert "software and files are those of the earlier run" in same.stderr
+    changes = (
+        ("tip.yaml", "# x\n"),
+        ("c.toml", "# x\n"),
+        ("bench.toml", "# x\n"),
+        ("m.toml", ""),
+        ("rmcu.dbc", "\n"),
+    )
+    for name, more in changes.items():
+        text = (tmp_path / name).read_text()
+        changed = text.replace("6089", "5000") if name == "m.toml" else text + more
+        assert changed != text, name
+        (tmp_path / name).write_text(changed)
+    (tmp_path / "rcs_dyno.eds").unlink()
+    done = hil("run", "--again", first, "--out", tmp_path / "second")
+    assert "rcs_dyno.eds is not there any more" in done.stderr
+    for name in changes:
+        assert f"{name} has changed since" in done.stderr
+    assert "values are equal to those of the earlier run" in done.stderr
+    refused = hil("run", "--again", first, "--out", first, "--overwrite", code=2)
+    assert "recording.mcap" in refused.stderr
 
 
 @pytest.mark.parametrize(
@@ -79,6 +128,8 @@ def test_the_largest_difference_is_named() -> None:
     assert "all 2 values are equal" in compared_in_words(before, before)
     text = compared_in_words(before, _result(peak=246.0, energy=2.5))
     assert text == "2 of 2 values differ from the earlier run's, s.energy most: 2 then, 2.5 now (25 %)"
+    from_zero = compared_in_words(_result(peak=0.0), _result(peak=0.7))
+    assert from_zero == "1 of 1 values differ from the earlier run's, s.peak most: 0 then, 0.7 now"
     assert "no criterion" in compared_in_words(before, _result())
 
 
