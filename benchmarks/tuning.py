@@ -30,7 +30,7 @@ def acceptance_trial(draws: int = 0, plan: str | Path = "acceptance", *, keeping
     driven = driven_by(loaded)
     start = load_controller(driven.file)
     cars = draws_of(load_model(bench.simulation.model), free.tolerance, draws, 0)
-    channels = channels_needed(tuple(criterion.metric for criterion in driven.criteria), free)
+    channels = channels_needed((*driven.criteria, *loaded.device_criteria), free)
     loops = SpeedLoops([car.model for car in cars], start.sample_time_s)
     return Trial(
         loaded, driven, free, start, cars, loops, BatchPrediction(loaded, bench, driven.file, channels)

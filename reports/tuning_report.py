@@ -8,7 +8,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hil.analysis.comparison import ComparedRun
-from hil.analysis.tuning import PARAMETERS, Confirmation, Standing, Tuning, values_of, within_hard_limits
+from hil.analysis.tuning import (
+    DEVICE_LIMIT,
+    PARAMETERS,
+    Confirmation,
+    Standing,
+    Tuning,
+    values_of,
+    within_hard_limits,
+)
 from hil.core.recording import Recording
 from hil.core.result import RunResult, Segment
 from reports import labels
@@ -56,8 +64,8 @@ def tuning_page(
     return Page(
         kind="Tuning",
         title=title,
-        headline=f"Worst margin {labels.share(worst.worst)}",
-        tone="pass" if worst.worst >= 0 else "fail",
+        headline=_headline(found),
+        tone="pass" if worst.worst >= 0 and not found.failed_checks else "fail",
         lead=_in_titles(verdict(found), found),
         notes=tuple(notes),
         parts=(
@@ -70,6 +78,12 @@ def tuning_page(
     )
 
 
+def _headline(found: Tuning) -> str:
+    if found.failed_checks:
+        return "The controller fails what any device must do"
+    return f"Worst margin {labels.share(found.chosen.worst.worst)}"
+
+
 def _first(found: Tuning, runs: Sequence[Shown]) -> Part:
     """The margins of the tuned controller beside the start's, the least first, and the binding response."""
     ranked = sorted(found.trial.driven.criteria, key=lambda one: found.chosen.least_margin(one.id))
@@ -77,7 +91,7 @@ def _first(found: Tuning, runs: Sequence[Shown]) -> Part:
         (
             criterion_title(criterion.id),
             _limit(criterion),
-            labels.share(found.start.least_margin(criterion.id)) if found.start.worst.feasible else "none",
+            labels.share(found.start.least_margin(criterion.id)),
             labels.share(found.chosen.least_margin(criterion.id)),
         )
         for criterion in ranked[:_ROWS]
@@ -116,6 +130,7 @@ def _parts(found: Tuning, runs: Sequence[Shown], origin: Origin) -> list[Part]:
     parts = [
         Part("margins", "Margins", _margins_text(found), (_margins(found),)),
         Part("limits", "Hard limits", _limits_text(found), (_limits(found),)),
+        *_device(found),
         Part("parameters", "Parameters", "", (_parameters(found),)),
         Part("binding", "Binding criteria", _binding_text(found), (_binding(found),)),
     ]
@@ -275,7 +290,9 @@ def _limits_text(found: Tuning) -> str:
 def _limits(found: Tuning) -> Table:
     names = tuple(one.name for one in found.shown)
     rows = []
-    for name in (one for one in found.chosen.nominal.limits if not one.startswith("keep.")):
+    for name in found.chosen.nominal.limits:
+        if name.startswith(("keep.", DEVICE_LIMIT)):
+            continue
         cells = (
             labels.share(min(t.limits.get(name, float("nan")) for t in one.tried)) for one in found.shown
         )
@@ -283,6 +300,31 @@ def _limits(found: Tuning) -> Table:
         value = "yes" if isinstance(limit, bool) else labels.nominal(limit)
         rows.append((_LIMITS.get(name, name.replace("_", " ")), value, *cells))
     return Table(("limit", "value", *names), tuple(rows))
+
+
+def _device(found: Tuning) -> tuple[Part, ...]:
+    """What any device must do in the driven segments, and whether each controller does."""
+    rows = tuple(
+        (
+            criterion_title(check.id),
+            _limit(check),
+            *(_least_of_check(one, check.id) for one in found.shown),
+        )
+        for check in found.trial.device_checks
+    )
+    if not rows:
+        return ()
+    text = (
+        "Margin of what is asked of every device, least over all vehicles. No controller is chosen that "
+        "fails one which the start keeps."
+    )
+    head = ("check", "limit", *(one.name for one in found.shown))
+    return (Part("device", "What any device must do", text, (Table(head, rows, 1),)),)
+
+
+def _least_of_check(one: Standing, id_: str) -> str:
+    known = [tried.device[id_] for tried in one.tried if id_ in tried.device]
+    return labels.share(min(known)) if known else labels.DASH
 
 
 def _parameters(found: Tuning) -> Table:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import datetime
 import json
+import math
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args
@@ -100,6 +101,7 @@ def find_runs(folder: Path, wanted: RunsWanted) -> FoundRuns:
         raise BadInputError("is not a folder", where=str(folder), fix="give the folder that runs are in")
     found, unread, read = [], [], 0
     criteria: set[str] = set()
+    names: dict[str, set[str]] = {"plan": set(), "bench": set()}
     for path in _results_below(folder):
         try:
             run = _read(path, wanted.criterion, criteria)
@@ -109,6 +111,8 @@ def find_runs(folder: Path, wanted: RunsWanted) -> FoundRuns:
         if run is None:
             continue
         read += 1
+        names["plan"].add(run.plan)
+        names["bench"].add(run.bench)
         if _passes(run, wanted):
             found.append(run)
     if wanted.criterion and read and wanted.criterion not in criteria:
@@ -117,6 +121,7 @@ def find_runs(folder: Path, wanted: RunsWanted) -> FoundRuns:
             where="--criterion",
             fix=did_you_mean(wanted.criterion, sorted(criteria)),
         )
+    _refuse_unknown(wanted, names)
     known = [run for run in found if _rank(run, wanted.sort) is not None]
     known.sort(key=lambda run: (_rank(run, wanted.sort), str(run.folder)), reverse=not wanted.rising)
     rest = [run for run in found if _rank(run, wanted.sort) is None]
@@ -134,8 +139,23 @@ def _refuse_wrong(wanted: RunsWanted) -> None:
             raise BadInputError(text, where=option, fix=did_you_mean(name, known))
     if not wanted.criterion and (wanted.above is not None or wanted.below is not None):
         raise BadInputError("a bound needs a criterion", where="--above, --below", fix="add --criterion ID")
+    for option, bound in (("--above", wanted.above), ("--below", wanted.below)):
+        if bound is not None and not math.isfinite(bound):
+            raise BadInputError(f"a bound of {bound} bounds nothing", where=option, fix="give a number")
+    if wanted.above is not None and wanted.below is not None and wanted.above > wanted.below:
+        text = f"no value is above {wanted.above:g} and below {wanted.below:g}"
+        raise BadInputError(text, where="--above, --below", fix="exchange them")
     if wanted.sort == "value" and not wanted.criterion:
         raise BadInputError("a value is that of a criterion", where="--sort value", fix="add --criterion ID")
+
+
+def _refuse_unknown(wanted: RunsWanted, names: Mapping[str, set[str]]) -> None:
+    """Refuse a plan or bench that no run has: a misspelt name would look like an empty list."""
+    for what, asked in (("plan", wanted.plan), ("bench", wanted.bench)):
+        for name in asked:
+            if names[what] and name not in names[what]:
+                text = f"no run has the {what} '{printable(name, 60)}'"
+                raise BadInputError(text, where=f"--{what}", fix=did_you_mean(name, sorted(names[what])))
 
 
 def _results_below(folder: Path) -> Iterator[Path]:

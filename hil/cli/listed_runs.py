@@ -9,7 +9,7 @@ from rich.markup import escape
 
 from hil.app.run_list import FoundRun, FoundRuns, RunsWanted, find_runs
 from hil.cli.options.files import List
-from hil.cli.output import console, local_time, plain_table, print_json, warn
+from hil.cli.output import console, local_time, plain_table, print_json, time_zone, warn
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable, share
 
@@ -71,7 +71,7 @@ def _print_table(found: FoundRuns, folder: Path, *, criterion: str) -> None:
         return
     table = plain_table()
     table.add_column("run", no_wrap=True)
-    table.add_column("started", no_wrap=True)
+    table.add_column(f"started ({time_zone()})", no_wrap=True)
     for name in ("plan", "bench", "verdict"):
         table.add_column(name)
     table.add_column("worst margin", justify="right", no_wrap=True)

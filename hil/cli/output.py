@@ -53,6 +53,11 @@ def local_time(moment: datetime.datetime | None) -> str:
     return "-" if moment is None else moment.astimezone().isoformat(" ", "seconds")[:19]
 
 
+def time_zone() -> str:
+    """This machine's, as an offset from UTC: +01:00."""
+    return datetime.datetime.now().astimezone().isoformat()[-6:]
+
+
 def plain_table(title: str | None = None) -> Table:
     """A table without lines, its columns still to come."""
     return Table(box=None, pad_edge=False, header_style="bold", title=title, title_justify="left")

@@ -10,7 +10,7 @@ from rich.markup import escape
 
 from hil.api_schemas.run_list import LONGEST_PAGE, FoundRun, RunsWanted
 from hil.cli.options.files import List
-from hil.cli.output import console, local_time, plain_table, print_json
+from hil.cli.output import console, local_time, plain_table, print_json, time_zone
 from hil.cli.remote_run import TOKEN
 from hil.client import Client
 from hil.core.errors import BadInputError
@@ -38,7 +38,7 @@ def list_remote_runs(options: List, since: datetime.datetime | None, until: date
         print_json(found.model_dump(mode="json"))
         return 0
     page, table = console(), plain_table()
-    for name in ("run", "plan", "bench", "DUT", "state", "verdict", "ended"):
+    for name in ("run", "plan", "bench", "DUT", "state", "verdict", f"ended ({time_zone()})"):
         table.add_column(name)
     if options.criterion:
         table.add_column(escape(options.criterion), justify="right")

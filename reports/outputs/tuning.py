@@ -130,6 +130,7 @@ def summary_of(
     """The content of `tune.json`; `asked` are the options of the command."""
     trial, worst = found.trial, found.chosen.worst
     return {
+        "failed_checks": list(found.failed_checks),
         "worse": [asdict(one) for one in found.worse],
         "held_by": list(found.held_by),
         **asked,
@@ -251,11 +252,14 @@ def verdict(found: Tuning) -> str:
         f"the plan's own controller has {_margin(found.start)} ({before.binding or 'not run'}, "
         f"{_car(before.draw)})."
     )
-    if found.worse:
+    if found.failed_checks:
+        names = ", ".join(found.failed_checks)
+        text = f"Fails what any device must do, as the plan's own controller does: {names}. {text}"
+    elif found.worse:
         most = found.worst_figure
         others = f" and {len(found.worse) - 1} more" if len(found.worse) > 1 else ""
         text = f"Worse than at the start: {most.words} by {share(most.share)}{others}. {text}"
-    if found.traded:
+    if found.traded or found.failed_checks:
         return text
     rest = "" if found.worse else ", and nothing else is worse"
     return f"{text} Margin increased for every criterion{rest}."
@@ -266,6 +270,8 @@ def worse_in_words(found: Tuning) -> list[str]:
     keep = found.trial.free.keep
     let_go = f"; let go: {', '.join(keep.may_worsen)}" if keep.may_worsen else ""
     allowed = f"allowed: {keep.share_percent:g} % of the start's figure{let_go}"
+    if found.start_fails:
+        allowed = "the plan's own controller fails the plan, so that nothing of it is kept but hard limits"
     if not found.worse:
         kept = "criteria, response time, steady error, torque effort, stability"
         return [f"{kept}: none is worse than at the start ({allowed})"]

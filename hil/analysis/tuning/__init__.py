@@ -19,11 +19,12 @@ from hil.analysis.tuning._parameters import ALTERNATIVES, PARAMETERS, Space, val
 from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._refine import Bench, Measured, RefinedRun, Refinement, RefinementBudget, refine
 from hil.analysis.tuning._search import Effort
-from hil.analysis.tuning._trial import CarryOut, Predicted, Trial, Tried, channels_needed
+from hil.analysis.tuning._trial import DEVICE_LIMIT, CarryOut, Predicted, Trial, Tried, channels_needed
 from hil.analysis.tuning._tune import Standing, Tuning, refuse_model, refuse_start, tune
 
 __all__ = [
     "ALTERNATIVES",
+    "DEVICE_LIMIT",
     "KEPT",
     "PARAMETERS",
     "Agreement",

@@ -41,7 +41,7 @@ def driven_by(plan: Plan, name: str = "") -> Driven:
         raise BadInputError(
             f"no segment is driven by a controller '{name}'",
             where=f"plan '{plan.name}'",
-            fix=did_you_mean(name, stems),
+            fix=f"{did_you_mean(name, stems)}; --start FILE begins at one that the plan does not name",
         )
     file = stems[name] if name else files[-1]
     segments = tuple(segment for segment, driver in walk.driver.items() if driver == file)

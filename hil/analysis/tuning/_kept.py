@@ -81,7 +81,12 @@ class Kept:
         return "stability" if self.name in _LOOP else self.name
 
     def worse_by(self, start: float, value: float) -> float:
-        """By which share a value is worse than the start's; negative: better."""
+        """By which share a value is worse than the start's; negative: better.
+
+        A response that never comes is infinitely late: no worse than another that never comes.
+        """
+        if not np.isfinite(start):
+            return 0.0 if not np.isfinite(value) else -1.0
         if not np.isfinite(value):
             return np.inf
         change = (value - start) if _LOOP.get(self.name, (0.0, True))[1] else (start - value)

@@ -31,6 +31,10 @@ from hil.core.model import Model
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, Segment
 from test_plans import Plan, judge
+from test_plans.criteria import Criterion
+
+#: Prefix of the hard limits that are checks of what any device must do.
+DEVICE_LIMIT = "device."
 
 #: What a candidate counts that keeps no hard limit, and one that cannot be run at all.
 INFEASIBLE, UNSTABLE = -2.0, -20.0
@@ -78,6 +82,7 @@ class Tried:
         limits: (limit - value)/limit of each hard limit by name; negative is beyond it.
         loop: margins of the speed loop.
         figures: what must not get worse than the start's; those of the run only where it was run.
+        device: margins of what any device must do in the driven segments, by the check's id.
         trouble: why nothing was run.
     """
 
@@ -89,6 +94,7 @@ class Tried:
     margins: Mapping[str, float] = field(default_factory=dict)
     trouble: str = ""
     figures: Mapping[Kept, float] = field(default_factory=dict)
+    device: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def feasible(self) -> bool:
@@ -154,8 +160,11 @@ class Trial:
         except HilError as error:
             return Tried(values, number, loop, limits, trouble=str(error), figures=figures)
         limits |= self._run_limits(found)
-        criteria = self.judged(found)
+        everything = judge(self._judging, found.recording, found.segments, measured=False)
+        criteria = tuple(one for one in everything if one.source == "plan")
         margins = self.margins_of(criteria)
+        device = self._device_margins(everything)
+        limits |= self._device_room(device, number if values else None)
         of_run = self._kept_of(found)
         figures |= of_run
         if not values:  # the start itself
@@ -168,7 +177,7 @@ class Trial:
             limits["no_worse_than_start"] = min(
                 margin - own.get(id_, -1.0) for id_, margin in margins.items()
             )
-        return Tried(values, number, loop, limits, criteria, margins, figures=figures)
+        return Tried(values, number, loop, limits, criteria, margins, figures=figures, device=device)
 
     def _starts(self, number: int) -> Tried:
         """The start on a car; tried once in each process."""
@@ -199,8 +208,39 @@ class Trial:
 
     def judged(self, found: Predicted) -> tuple[CriterionResult, ...]:
         """The criteria that depend on the controller."""
-        plan = self.plan.model_copy(update={"criteria": self.driven.criteria})
-        return judge(plan, found.recording, found.segments, measured=False, device=False)
+        return judge(self._judging, found.recording, found.segments, measured=False, device=False)
+
+    @property
+    def _judging(self) -> Plan:
+        """The plan with the criteria alone that depend on the controller."""
+        return self.plan.model_copy(update={"criteria": self.driven.criteria})
+
+    def _device_margins(self, criteria: Iterable[CriterionResult]) -> dict[str, float]:
+        """Of what any device must do in the driven segments, where it was judged."""
+        checks = {one.id for one in self.device_checks}
+        found = (one for one in criteria if one.source == "device" and one.id in checks)
+        return {
+            one.id: -1.0 if one.margin is None else one.margin for one in found if one.verdict != "not_judged"
+        }
+
+    def _device_room(self, margins: Mapping[str, float], number: int | None) -> dict[str, float]:
+        """What is left until a check fails; of one that the start fails, until it is worse than that.
+
+        Args:
+            number: of the car; None for the start itself.
+        """
+        if number is None:
+            return {device_limit(id_): max(margin, 0.0) for id_, margin in margins.items()}
+        start, share = self._starts(number).device, self._keep[0]
+        return {
+            device_limit(id_): margin if start.get(id_, 0.0) >= 0.0 else share + margin - start[id_]
+            for id_, margin in margins.items()
+        }
+
+    @property
+    def device_checks(self) -> tuple[Criterion, ...]:
+        """What any device must do in the segments that the controller drives."""
+        return tuple(one for one in self._judging.device_criteria if one.segment in self.driven.segments)
 
     def margins_of(self, criteria: Iterable[CriterionResult]) -> dict[str, float]:
         """Weighted margins by id of those `criteria` that depend on the controller, predicted or measured."""
@@ -224,6 +264,7 @@ class Trial:
         """Names of the hard limits that are asked for."""
         asked = [name for name, value in self.free.limits if value is not None and value is not False]
         kept = [one.limit for one in self.kept if one.group not in self.free.keep.may_worsen]
+        asked += [device_limit(one.id) for one in self.device_checks]
         if CRITERIA not in self.free.keep.may_worsen:
             kept += [margin_limit(criterion.id) for criterion in self.driven.criteria]
         return (*asked, *kept)
@@ -258,6 +299,11 @@ class Trial:
         return shares
 
 
+def device_limit(check: str) -> str:
+    """Name of a device check among hard limits."""
+    return f"{DEVICE_LIMIT}{check}"
+
+
 def _inside(recording: Recording, segment: Segment) -> slice:
     first, last = np.searchsorted(recording.time_s, (segment.start_s - 1e-6, segment.end_s + 1e-6))
     return slice(int(first), int(last))
@@ -275,12 +321,9 @@ def _motor_energy_j(recording: Recording, segment: Segment) -> float:
     return float(np.sum(np.maximum(power, 0.0)) * recording.sample_time_s)
 
 
-def channels_needed(trial_criteria: tuple[object, ...], free: Free) -> frozenset[str]:
-    """Channels that criteria and hard limits are computed from."""
-    names = {
-        *CHANNELS,
-        *(name for criterion in trial_criteria for name in getattr(criterion, "channels", ())),
-    }
+def channels_needed(criteria: Iterable[Criterion], free: Free) -> frozenset[str]:
+    """Channels that criteria, those of the device among them, and hard limits are computed from."""
+    names = {*CHANNELS, *(name for criterion in criteria for name in criterion.metric.channels)}
     if free.limits.motor_torque_nm is not None:
         names.add("motor_torque_ref_nm")
     if free.limits.motor_energy_j is not None:

@@ -100,6 +100,17 @@ class Tuning:
         return tuple(sorted(found, key=lambda one: -one.share))
 
     @property
+    def failed_checks(self) -> tuple[str, ...]:
+        """What any device must do and the chosen controller does not, on some car; the start fails it too."""
+        ids = [check.id for check in self.trial.device_checks]
+        return tuple(i for i in ids if any(tried.device.get(i, 0.0) < 0.0 for tried in self.chosen.tried))
+
+    @property
+    def start_fails(self) -> bool:
+        """Whether the start fails the plan on the model itself: of it, hard limits alone are kept there."""
+        return min(self.start.nominal.margins.values(), default=-1.0) < 0.0
+
+    @property
     def held_by(self) -> tuple[str, ...]:
         """Of what is kept, that which has no more room on some car: a search with it let go may gain more."""
         groups = {one.limit: one.group for one in self.trial.kept}

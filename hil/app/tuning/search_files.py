@@ -112,8 +112,8 @@ def _let_go(free: Free, names: tuple[str, ...]) -> Free:
 
 
 def _runs(plan: Plan, bench: BenchFile, driven: Driven, free: Free) -> BatchPrediction:
-    metrics = tuple(criterion.metric for criterion in driven.criteria)
-    return BatchPrediction(plan, bench, driven.file, channels_needed(metrics, free))
+    criteria = (*driven.criteria, *plan.device_criteria)
+    return BatchPrediction(plan, bench, driven.file, channels_needed(criteria, free))
 
 
 def _refuse_beyond_bench(free: Free, start: Controller, bench: BenchFile) -> None:

@@ -99,8 +99,9 @@ class Tune:
     envelope. bench/ holds the runs; controller.toml is the best one measured. The first run is compared with
     its prediction; if it deviates, diagnosis/ holds the reason. --runs 1 only confirms.
 
-    Exit code: 0 every criterion that depends on the controller passes (on every vehicle; with --on-bench: in
-    the best run, which if it is the first is also as predicted), 1 one does not, 3 a run failed.
+    Exit code: 0 every criterion that depends on the controller and every device check passes (on every
+    vehicle; with --on-bench: in the best run, which if it is the first is also as predicted), 1 one does
+    not, 3 a run failed.
     """
 
     SEVERAL = ("--envelope", "--may-worsen")

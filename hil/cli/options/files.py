@@ -58,7 +58,11 @@ class List:
         typer.Option(metavar="VERDICT", help="with runs: pass, fail, done or error"),
     ] = None
     since: Annotated[
-        str, typer.Option(metavar="DATE", help="with runs: started then or later, such as 2026-11-28T06:00")
+        str,
+        typer.Option(
+            metavar="DATE",
+            help="with runs: started then or later, such as 2026-11-28T06:00, in local time without a zone",
+        ),
     ] = ""
     until: Annotated[str, typer.Option(metavar="DATE", help="with runs: started before")] = ""
     criterion: Annotated[

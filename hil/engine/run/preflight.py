@@ -12,6 +12,7 @@ from hil.core.channels import TICK_S
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BadInputError
 from hil.core.files import disk_of
+from hil.core.model import Model, load_model
 from hil.core.vehicle import VehicleAndRoad
 from hil.engine.bench.bench_tables import BenchFile
 from test_plans import PROMPT_TIMEOUT_S, Array, Plan, PlannedSegment, Quantity, Work, estimate_duration_s
@@ -53,17 +54,25 @@ def remark_on_room(plan: Plan, out: Path) -> str:
     return f"the run may need {needed / 1e6:.0f} MB of {free / 1e6:.0f} MB that are free: {disk_of(out)}"
 
 
-def preflight(plan: Plan, bench: BenchFile, out: Path, *, somebody_answers: bool = True) -> None:
+def preflight(
+    plan: Plan,
+    bench: BenchFile,
+    out: Path,
+    *,
+    model: Model | None = None,
+    somebody_answers: bool = True,
+) -> None:
     """Refuse a run that could not end well.
 
     Args:
+        model: in place of the simulated bench's own.
         somebody_answers: whether prompts reach an operator, or a person has confirmed them beforehand.
 
     Raises:
         BadInputError: a controller file that cannot be used, a request beyond the
             bench's limits, a prompt that no one can answer on hardware, or too little room on the disk.
     """
-    rehearsal = rehearsed(plan, bench)
+    rehearsal = rehearsed(plan, bench, model)
     if rehearsal.prompts and not somebody_answers and bench.simulation is None:
         raise BadInputError(
             f"the operator is asked '{rehearsal.prompts[0]}', and there is no terminal to ask on",
@@ -92,13 +101,13 @@ def channels_of(plan: Plan) -> list[str]:
     return list(dict.fromkeys(name for name in channels if isinstance(name, str)))
 
 
-def rehearsed(plan: Plan, bench: BenchFile) -> Rehearsal:
-    """All steps and end steps, rehearsed.
+def rehearsed(plan: Plan, bench: BenchFile, model: Model | None = None) -> Rehearsal:
+    """All steps and end steps, rehearsed; `model` is in place of the simulated bench's own.
 
     Raises:
         BadInputError: the plan asks for more than the bench allows.
     """
-    rehearsal = Rehearsal(bench)
+    rehearsal = Rehearsal(bench, model)
     for step in (*plan.steps, *plan.finally_):
         step.execute(rehearsal)
     return rehearsal
@@ -109,8 +118,8 @@ class Rehearsal:
 
     sample_time_s = TICK_S
 
-    def __init__(self, bench: BenchFile) -> None:
-        self._bench = bench
+    def __init__(self, bench: BenchFile, model: Model | None = None) -> None:
+        self._bench, self._model = bench, model
         self._has_controller = False
         #: Files that analysis steps make.
         self.made: set[str] = set()
@@ -155,13 +164,22 @@ class Rehearsal:
         """Nothing to compare."""
 
     def set_vehicle(self, vehicle: VehicleAndRoad) -> None:
-        """There must be a device that may take it."""
-        del vehicle
+        """There must be a device that may take it, and where the bench is simulated tyres that slide."""
         if not self._bench.devices:
             raise BadInputError(
                 "set_vehicle: the bench has no device that accepts vehicle and road load",
                 where="plan",
                 fix='give the bench file a panel: [devices.panel] with kind = "rcs-panel"',
+            )
+        simulation = self._bench.simulation
+        if simulation is None or (vehicle.friction_left, vehicle.friction_right) == (None, None):
+            return
+        model = self._model or load_model(simulation.model)
+        if not any(use.id == "tyre_friction" for use in model.effects):
+            raise BadInputError(
+                "set_vehicle: friction is set, and the tyres of the bench's model hold whatever the road is",
+                where="plan",
+                fix='add [[effects]] id = "tyre_friction" to the model of the bench, or take sim_road',
             )
 
     def release_vehicle(self) -> None:

@@ -68,7 +68,7 @@ def run_plan(request: RunRequest) -> RunOutcome:
         refuse_long(request.accept_expired, "--accept-expired", LONGEST_REASON)
         answers = request.terminal is not None or request.confirmed_by != ""
         expired = accepted_expiry(request.bench, today, request.accept_expired)
-        preflight(request.plan, request.bench, request.out, somebody_answers=answers)
+        preflight(request.plan, request.bench, request.out, model=request.model, somebody_answers=answers)
         refuse_unconfirmed(request.plan, request.hazard_confirmed_by)
         refuse_latched(request.bench, request.stops)
         with open_bench(request.bench, model=request.model) as bench:

@@ -108,6 +108,8 @@ def test_a_file_of_that_name_that_is_none_is_no_run(runs: Path) -> None:
         ({"sort": "value"}, "a value is that of a criterion"),
         ({"above": 1.0}, "a bound needs a criterion"),
         ({"criterion": "s.peek"}, "no run has the criterion 's.peek'"),
+        ({"plan": ("acceptence",)}, "no run has the plan 'acceptence'"),
+        ({"bench": ("nowhere",)}, "no run has the bench 'nowhere'"),
     ],
 )
 def test_what_cannot_be_meant_is_refused(runs: Path, wanted: dict[str, object], said: str) -> None:

@@ -64,13 +64,7 @@ def test_whatever_lies_beside_the_plan_is_compared_and_the_run_itself_is_never_r
     hil(*command, "--out", first)
     same = hil("run", "--again", first, "--out", tmp_path / "same")
     assert "software and files are those of the earlier run" in same.stderr
-    changes = (
-        ("tip.yaml", "# x\n"),
-        ("c.toml", "# x\n"),
-        ("bench.toml", "# x\n"),
-        ("m.toml", ""),
-        ("rmcu.dbc", "\n"),
-    )
+    changes = {"tip.yaml": "# x\n", "c.toml": "# x\n", "bench.toml": "# x\n", "m.toml": "", "rmcu.dbc": "\n"}
     for name, more in changes.items():
         text = (tmp_path / name).read_text()
         changed = text.replace("6089", "5000") if name == "m.toml" else text + more
@@ -97,6 +91,11 @@ def test_whatever_lies_beside_the_plan_is_compared_and_the_run_itself_is_never_r
         (["list", "plans", "--sort", "plan"], "--sort goes with `hil list runs`"),
         (["list", "plans", "out"], "DIR goes with `hil list runs`"),
         (["list", "runs", str(ROOT / "benches"), "--since", "yesterday"], "'yesterday' is no date"),
+        (["list", "runs", "out", "--criterion", "s.jerk", "--above", "nan"], "a bound of nan bounds nothing"),
+        (
+            ["list", "runs", "out", "--criterion", "s.jerk", "--above", "5", "--below", "3"],
+            "no value is above 5 and below 3",
+        ),
     ],
 )
 def test_wrong_input_is_one_message(

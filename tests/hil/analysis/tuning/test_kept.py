@@ -135,3 +135,29 @@ def test_what_a_car_left_out_forbids_is_backed_off_from_towards_the_start():
     nominal = tune(trial_of(KEEPING), seed=1, effort=alone, processes=1)
     assert any(not trial.tried(nominal.chosen.values, car).feasible for car in range(7))
     assert found.chosen.worst.worst >= found.start.worst.worst
+
+
+LONG = PLAN.replace("after_s: 0.8", "after_s: 3")
+SLOW, QUICK = {"feed_forward_time_s": 0.2}, {"feed_forward_time_s": 0.03}
+
+
+def test_no_candidate_fails_what_any_device_must_do_and_the_start_does():
+    trial = trial_of(plan_text=LONG + "device: {response_s: 0.3}\n")
+    start, slow, quick = (trial.tried(values, 0) for values in ({}, SLOW, QUICK))
+    assert start.feasible
+    assert quick.feasible
+    assert not slow.feasible
+    beyond = [name for name, room in slow.limits.items() if room < 0.0]
+    assert beyond == ["device.phase.response_time"]
+    assert "device.phase.response_time" in trial.limits
+
+
+def test_what_the_start_fails_may_not_get_worse_and_is_told():
+    trial = trial_of(plan_text=LONG + "device: {response_s: 0.1}\n")
+    start, slow, quick = (trial.tried(values, 0) for values in ({}, SLOW, QUICK))
+    assert start.device["phase.response_time"] < 0.0
+    assert start.feasible
+    assert quick.feasible
+    assert not slow.feasible
+    found = tune(trial, seed=1, effort=Effort(starts=0, far=2, near=1, joins=0, joining=1), processes=1)
+    assert found.failed_checks == ("phase.response_time",)

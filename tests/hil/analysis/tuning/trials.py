@@ -52,7 +52,7 @@ def trial_of(free_text=FREE, *, draws=0, seed=0, model=MODEL, plan_text=PLAN):
     driven = driven_by(plan)
     start = load_controller(driven.file)
     cars = draws_of(model, free.tolerance, draws, seed)
-    channels = channels_needed(tuple(c.metric for c in driven.criteria), free)
+    channels = channels_needed((*driven.criteria, *plan.device_criteria), free)
     return Trial(
         plan,
         driven,

@@ -7,10 +7,11 @@ from pathlib import Path
 import pytest
 
 from hil.core.controller import load_controller
-from hil.core.errors import BenchError
+from hil.core.errors import BadInputError, BenchError
 from hil.core.model import load_model
 from hil.engine import load_bench
 from hil.engine.prediction.prediction import predict
+from hil.engine.run.preflight import preflight
 from test_plans import judge, load_plan
 from test_plans.loading import LIBRARY
 from tests.benches_for_tests import plan
@@ -48,3 +49,10 @@ def test_segments_know_their_road() -> None:
 def test_a_model_whose_tyres_hold_everywhere_has_no_friction_to_set() -> None:
     with pytest.raises(BenchError, match="refuses a friction"):
         predict(plan("[{set_vehicle: {friction: 0.1}}]"), BENCH, load_model(BENCHES / "three_inertia.toml"))
+
+
+def test_a_run_is_refused_before_it_begins_where_no_tyre_can_slide(tmp_path: Path) -> None:
+    icy = plan("[{set_vehicle: {friction: 0.1}}]")
+    preflight(icy, BENCH, tmp_path)
+    with pytest.raises(BadInputError, match="hold whatever the road is"):
+        preflight(icy, BENCH, tmp_path, model=load_model(BENCHES / "three_inertia.toml"))
