@@ -112,7 +112,8 @@ def _first(found: Tuning, runs: Sequence[Shown]) -> Part:
 
 def _in_titles(text: str, found: Tuning) -> str:
     """A sentence with the criteria's titles in place of their ids, the longest id first."""
-    for id_ in sorted((one.id for one in found.trial.driven.criteria), key=len, reverse=True):
+    criteria = (*found.trial.driven.criteria, *found.trial.device_checks)
+    for id_ in sorted((one.id for one in criteria), key=len, reverse=True):
         text = text.replace(id_, criterion_title(id_))
     return text
 
