@@ -3,16 +3,16 @@
 export const BASE = "/app";
 
 export type Place =
-  | { view: "benches" | "runs" | "compare" | "plans" | "models" | "controllers" | "diagnoses" | "campaigns" | "audit" | "settings" }
+  | { view: "benches" | "runs" | "compare" | "plans" | "models" | "controllers" | "design" | "identifications" | "diagnoses" | "campaigns" | "audit" | "settings" }
   | { view: "bench" | "panel"; bench: string }
   | { view: "run"; run: number }
   | { view: "plan" | "model" | "controller"; name: string }
-  | { view: "diagnosis" | "campaign"; id: number }
+  | { view: "identification" | "diagnosis" | "campaign"; id: number }
   | { view: "missing"; path: string };
 
-const LISTS = ["benches", "runs", "compare", "plans", "models", "controllers", "diagnoses", "campaigns", "audit", "settings"] as const;
+const LISTS = ["benches", "runs", "compare", "plans", "models", "controllers", "design", "identifications", "diagnoses", "campaigns", "audit", "settings"] as const;
 const NAMED = { plans: "plan", models: "model", controllers: "controller" } as const;
-const NUMBERED = { diagnoses: "diagnosis", campaigns: "campaign" } as const;
+const NUMBERED = { identifications: "identification", diagnoses: "diagnosis", campaigns: "campaign" } as const;
 
 export function placeOf(path: string): Place {
   const missing: Place = { view: "missing", path };
@@ -54,6 +54,7 @@ export const to = {
   plan: (plan: string): string => `${BASE}/plans/${name(plan)}`,
   model: (model: string): string => `${BASE}/models/${name(model)}`,
   controller: (controller: string): string => `${BASE}/controllers/${name(controller)}`,
+  identification: (id: number): string => `${BASE}/identifications/${id}`,
   diagnosis: (id: number): string => `${BASE}/diagnoses/${id}`,
   campaign: (id: number): string => `${BASE}/campaigns/${id}`,
   compare: (first: number, other: number): string => `${BASE}/compare?runs=${first},${other}`,
@@ -61,7 +62,7 @@ export const to = {
 
 const TITLES: Record<(typeof LISTS)[number], string> = {
   benches: "Benches", runs: "Runs", compare: "Compare runs", plans: "Plans", models: "Models", controllers: "Controllers",
-  diagnoses: "Diagnoses", campaigns: "Campaigns", audit: "Audit log", settings: "Settings",
+  design: "Design a controller", identifications: "Identifications", diagnoses: "Diagnoses", campaigns: "Campaigns", audit: "Audit log", settings: "Settings",
 };
 
 export function titleOf(place: Place): string {
@@ -72,6 +73,7 @@ export function titleOf(place: Place): string {
     case "plan": return `Plan ${place.name}`;
     case "model": return `Model ${place.name}`;
     case "controller": return `Controller ${place.name}`;
+    case "identification": return `Identification ${place.id}`;
     case "diagnosis": return `Diagnosis ${place.id}`;
     case "campaign": return `Campaign ${place.id}`;
     case "missing": return "No such page";

@@ -37,3 +37,7 @@ export type TokenMade = Schemas["TokenMade"];
 export type Agent = Schemas["AgentData"];
 export type KeptApart = Schemas["KeptApart"];
 export type Layout = Schemas["LayoutData"];
+export type DraftData = Schemas["DraftData"];
+export type DesignData = Schemas["DesignData"];
+export type Identification = Schemas["IdentificationData"];
+export type CampaignExample = Schemas["CampaignExample"];

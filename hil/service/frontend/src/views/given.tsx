@@ -8,7 +8,6 @@ import { attempt, useData } from "../data.ts";
 import { go } from "../router.ts";
 import { useMay } from "../session.ts";
 import { Heading, inWords, Loaded, Scroll, Section } from "../ui/parts.tsx";
-import { FormerPage } from "./former-page.tsx";
 import { GiveFile } from "./give-file.tsx";
 import { FileText } from "./plans.tsx";
 
@@ -25,7 +24,7 @@ export function Models(): JSX.Element {
           </table></Scroll>
         )}
       </Loaded>
-      <FormerPage what="Identify a model from runs" role="engineer" />
+      {may("engineer") ? <p><a href={to.list("identifications")}>Identify a model from runs</a></p> : null}
       {may("engineer") ? <Section title="Give a model" label="give"><GiveFile kind="model" path="/models" ending=".toml" onGiven={(name) => go(to.model(name))} /></Section> : null}
     </>
   );
@@ -44,7 +43,7 @@ export function Controllers(): JSX.Element {
           </table></Scroll>
         )}
       </Loaded>
-      <FormerPage what="Design a controller" role="engineer" />
+      {may("engineer") ? <p><a href={to.list("design")}>Design a controller</a></p> : null}
       {may("engineer") ? <Section title="Give a controller" label="give"><GiveFile kind="controller" path="/controllers" ending=".toml" onGiven={(name) => go(to.controller(name))} /></Section> : null}
     </>
   );
