@@ -38,7 +38,7 @@ from hil.api_schemas.api import (
     TokenWanted,
     TrendData,
 )
-from hil.api_schemas.campaign import CampaignData, CampaignExample, CampaignWanted
+from hil.api_schemas.campaign import CampaignData, CampaignExample, CampaignFindings, CampaignWanted
 from hil.api_schemas.comparison import ComparisonData, TracesData
 from hil.api_schemas.design import (
     ControllerData,
@@ -301,6 +301,10 @@ class Client(Requests):
     def campaign(self, campaign: int) -> CampaignData:
         """A campaign, with its progress and the shares that pass so far."""
         return self._one(CampaignData, "GET", f"/campaigns/{campaign}")
+
+    def campaign_findings(self, campaign: int) -> CampaignFindings:
+        """What a campaign that is over came to."""
+        return self._one(CampaignFindings, "GET", f"/campaigns/{campaign}/findings")
 
     def cancel_campaign(self, campaign: int) -> CampaignData:
         """End one; what is under way is awaited and kept, unless this is asked twice."""

@@ -24,6 +24,7 @@ from hil.service.api import (
     _run_list,
     _run_views,
     _runs,
+    _schemas,
     _studies,
     _trends,
 )
@@ -39,6 +40,7 @@ _PARTS = (
     _agents,
     _live,
     _plans,
+    _schemas,
     _runs,
     _run_views,
     _run_list,

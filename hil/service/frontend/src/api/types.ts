@@ -41,3 +41,4 @@ export type DraftData = Schemas["DraftData"];
 export type DesignData = Schemas["DesignData"];
 export type Identification = Schemas["IdentificationData"];
 export type CampaignExample = Schemas["CampaignExample"];
+export type CampaignFindings = Schemas["CampaignFindings"];

@@ -27,6 +27,7 @@ export interface CurvePlotOptions {
   y: { unit: string; low?: number; high?: number };
   band?: readonly [number, number];
   limits?: readonly number[];
+  uprights?: readonly number[]; // limits of what is along x
   says?: string; // beside the title while nothing is pointed at
 }
 
@@ -82,14 +83,14 @@ function make(element: HTMLElement, now: { current: CurvePlotOptions }, point: (
   const faint = (role: string) => `color-mix(in srgb, ${colour(`series-${role}`)} 25%, transparent)`;
   return new uPlot({
     width: Math.max(200, element.clientWidth), height: HEIGHT, legend: { show: false },
-    scales: { x: { time: false, ...(x.log ? { distr: 3 } : {}), range: (_, low, high) => [low ?? 1, high ?? 2] }, y: { range: (_, low, high) => rangeOf(now.current, low, high) } },
+    scales: { x: { time: false, ...(x.log ? { distr: 3 } : {}), range: (_, low, high) => alongOf(now.current, low, high) }, y: { range: (_, low, high) => rangeOf(now.current, low, high) } },
     axes: [axis({ space: 50, size: 28, values: (_, values) => named(values, x.unit) }), axis({ size: 56, unit: y.unit })],
     series: [{}, ...curves.flatMap(seriesOf)],
     bands: curves.flatMap((one, at) => (one.reach ? [{ series: [(starts[at] as number) + 1, (starts[at] as number) + 2] as [number, number], fill: () => faint(one.role) }] : [])),
     cursor: { drag: { x: false, y: false }, points: { show: false } },
     hooks: {
       drawAxes: [(plot) => { const { band } = now.current; if (band) drawBand(plot, ...band); }],
-      draw: [(plot) => drawLevels(plot, now.current.limits ?? [])],
+      draw: [(plot) => drawLimitsOf(plot, now.current)],
       setCursor: [(plot) => point(pointedAt(plot, now.current, starts))],
     },
   }, dataOf(curves), element);
@@ -99,6 +100,14 @@ function rangeOf({ y, limits = [] }: CurvePlotOptions, low: number | null, high:
   const ends = [low, high, ...limits].filter((one): one is number => one !== null);
   const [from, to] = ends.length ? roomy(Math.min(...ends), Math.max(...ends)) : [0, 1];
   return [y.low ?? from, y.high ?? to];
+}
+
+// Bars and limits have their place; lines end where they end.
+function alongOf({ curves, uprights = [] }: CurvePlotOptions, low: number | null, high: number | null): [number, number] {
+  const bars = curves.find((one) => one.looks === "bars");
+  if (!bars) return [low ?? 1, high ?? 2];
+  const half = 0.5 * ((bars.x[1] ?? (bars.x[0] ?? 0) + 1) - (bars.x[0] ?? 0));
+  return roomy(Math.min((low ?? 0) - half, ...uprights), Math.max((high ?? 1) + half, ...uprights));
 }
 
 // The last of them says of what they are.
@@ -114,19 +123,18 @@ function pointedAt(plot: uPlot, { curves, x, y }: CurvePlotOptions, starts: numb
   return `${figure(place, x.unit)}: ${values.map((one) => figure(one ?? null)).join(", ")} ${y.unit}`;
 }
 
-function drawLevels(plot: uPlot, levels: readonly number[]): void {
+function drawLimitsOf(plot: uPlot, { limits = [], uprights = [] }: CurvePlotOptions): void {
   const { ctx: pen, bbox: box } = plot, one = devicePixelRatio;
   pen.save();
+  pen.beginPath();
+  pen.rect(box.left, box.top, box.width, box.height);
+  pen.clip();
   pen.strokeStyle = colour("series-limit");
   pen.lineWidth = 1.4 * one;
   pen.setLineDash([6 * one, 4 * one]);
-  for (const level of levels) {
-    const y = plot.valToPos(level, "y", true);
-    if (y < box.top || y > box.top + box.height) continue;
-    pen.beginPath();
-    pen.moveTo(box.left, y);
-    pen.lineTo(box.left + box.width, y);
-    pen.stroke();
-  }
+  pen.beginPath();
+  for (const y of limits.map((level) => plot.valToPos(level, "y", true))) { pen.moveTo(box.left, y); pen.lineTo(box.left + box.width, y); }
+  for (const x of uprights.map((place) => plot.valToPos(place, "x", true))) { pen.moveTo(x, box.top); pen.lineTo(x, box.top + box.height); }
+  pen.stroke();
   pen.restore();
 }
