@@ -11,7 +11,6 @@ from starlette.types import ASGIApp
 from hil.service.api import (
     _agents,
     _benches,
-    _built_page,
     _campaigns,
     _comparisons,
     _design,
@@ -81,6 +80,5 @@ def _bare(service: Service | None) -> FastAPI:
     for part in _PARTS:
         app.include_router(part.router, prefix=PREFIX, dependencies=[Depends(refuse_unknown_query)])
     _page.add_to(app)
-    _built_page.add_to(app)
     answer_problems(app)
     return app

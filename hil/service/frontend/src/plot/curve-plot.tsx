@@ -84,7 +84,7 @@ function make(element: HTMLElement, now: { current: CurvePlotOptions }, point: (
   return new uPlot({
     width: Math.max(200, element.clientWidth), height: HEIGHT, legend: { show: false },
     scales: { x: { time: false, ...(x.log ? { distr: 3 } : {}), range: (_, low, high) => alongOf(now.current, low, high) }, y: { range: (_, low, high) => rangeOf(now.current, low, high) } },
-    axes: [axis({ space: 50, size: 28, values: (_, values) => named(values, x.unit) }), axis({ size: 56, unit: y.unit })],
+    axes: [axis({ space: 50, size: 28, values: (_, values) => named(x.log ? roundOnes(values) : values, x.unit) }), axis({ size: 56, unit: y.unit })],
     series: [{}, ...curves.flatMap(seriesOf)],
     bands: curves.flatMap((one, at) => (one.reach ? [{ series: [(starts[at] as number) + 1, (starts[at] as number) + 2] as [number, number], fill: () => faint(one.role) }] : [])),
     cursor: { drag: { x: false, y: false }, points: { show: false } },
@@ -109,6 +109,9 @@ function alongOf({ curves, uprights = [] }: CurvePlotOptions, low: number | null
   const half = 0.5 * ((bars.x[1] ?? (bars.x[0] ?? 0) + 1) - (bars.x[0] ?? 0));
   return roomy(Math.min((low ?? 0) - half, ...uprights), Math.max((high ?? 1) + half, ...uprights));
 }
+
+// Of a logarithmic axis that begins anywhere, round ones alone are named.
+const roundOnes = (values: readonly (number | null)[]): (number | null)[] => values.map((one) => (one !== null && /^[125](e|$)/.test((one.toExponential(3).replace(/\.?0+e/, "e"))) ? one : null));
 
 // The last of them says of what they are.
 function named(values: readonly (number | null)[], unit: string): string[] {

@@ -9,6 +9,7 @@ import { go } from "../router.ts";
 import { useMay } from "../session.ts";
 import { Heading, inWords, Loaded, Scroll, Section } from "../ui/parts.tsx";
 import { GiveFile } from "./give-file.tsx";
+import { UseController } from "./design/use-controller.tsx";
 import { FileText } from "./plans.tsx";
 
 export function Models(): JSX.Element {
@@ -50,7 +51,16 @@ export function Controllers(): JSX.Element {
 }
 
 export const ModelView = ({ name }: { name: string }): JSX.Element => <Given name={name} kind="model" path="/models" list="models" />;
-export const ControllerView = ({ name }: { name: string }): JSX.Element => <Given name={name} kind="controller" path="/controllers" list="controllers" />;
+
+export function ControllerView({ name }: { name: string }): JSX.Element {
+  const may = useMay();
+  return (
+    <>
+      <Given name={name} kind="controller" path="/controllers" list="controllers" />
+      {may("engineer") ? <Section title="Use it in a plan" label="use"><UseController controller={name} /></Section> : null}
+    </>
+  );
+}
 
 interface GivenOptions {
   name: string;

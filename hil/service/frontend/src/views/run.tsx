@@ -81,12 +81,15 @@ function RunActions({ run }: { run: Run }): JSX.Element | null {
     const queued = await attempt(() => post<Run>("/runs", { plan: run.plan, bench: run.bench, values: run.values }));
     if (queued) go(to.run(queued.id));
   };
+  const recorded = OVER.includes(run.state) && (run.files ?? []).includes("recording.mcap");
   const waits = run.state === "queued" || run.state === "waiting_approval";
   return (
     <div class="row level">
       {may("operator") && OVER.includes(run.state) ? <button type="button" onClick={() => void again()}>Again</button> : null}
       {may("operator") && waits ? <button type="button" onClick={() => void attempt(() => post(`/runs/${run.id}/abort`))}>Cancel</button> : null}
       {run.state === "waiting_approval" && may("engineer") ? <button type="button" class="main" onClick={() => void attempt(() => post(`/runs/${run.id}/approve`))}>Approve</button> : null}
+      {recorded && may("engineer") ? <a href={`${to.list("diagnoses")}?runs=${run.id}`}>Diagnose</a> : null}
+      {recorded && may("engineer") ? <a href={`${to.list("identifications")}?runs=${run.id}`}>Identify a model</a> : null}
       {run.state === "ended" ? <a href={`${to.list("compare")}?runs=${run.id}`}>Compare with another run</a> : null}
       <a href={`${to.list("runs")}?plan=${encodeURIComponent(run.plan)}`}>All runs of this plan</a>
     </div>

@@ -38,7 +38,7 @@ export function BeginCampaign(): JSX.Element {
       </label>
       {byForm && schema ? <CampaignForm schema={schema} chosen={chosen} onChange={setChosen} /> : null}
       {from === OWN ? <OwnFiles onText={setText} onBeside={setBeside} /> : null}
-      <label class="field">Content<textarea rows={12} spellcheck={false} required maxLength={200_000} readOnly={byForm} value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
+      <label class="field">Content<textarea rows={byForm ? 6 : 14} spellcheck={false} required maxLength={200_000} readOnly={byForm} value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
       <button type="submit" class="main">Simulate</button>
     </form>
   );

@@ -84,7 +84,7 @@ function Decides({ controllers, id, units }: { controllers: Controller[]; id: st
 
 function Correlation({ value }: { value: number | null }): JSX.Element {
   if (value === null) return <span class="quiet">–</span>;
-  return <span class="correlation"><span class="bar" style={{ "--from": `${50 + 50 * Math.min(0, value)}%`, "--wide": `${50 * Math.abs(value)}%` }} /> {figure(value)}</span>;
+  return <span class="correlation"><span class="rho" style={{ "--from": `${50 + 50 * Math.min(0, value)}%`, "--wide": `${50 * Math.abs(value)}%` }} /> {figure(value)}</span>;
 }
 
 const SHOWN = 10;

@@ -73,7 +73,7 @@ function Found({ data }: { data: Diagnosis }): JSX.Element {
       <Section title="Error over noise, before → after" label="map"><ErrorMap of={data.map} /></Section>
       <Section title="Gap, % of the signal" label="gap"><Gaps of={data.gap} label="Gap" /></Section>
       {hasHoldout ? <Section title="Gap on runs that were held out" label="holdout"><Gaps of={data.holdout_gap} label="Gap of held-out runs" /></Section> : null}
-      <Section title="The model with what it lacked" label="keep"><KeepModel study={data.study} file="model.toml" what="improved model" /></Section>
+      <KeepModel study={data.study} file="model.toml" what="improved model" />
     </>
   );
 }

@@ -7,6 +7,7 @@ import type { Study } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt } from "../../data.ts";
 import { useMay } from "../../session.ts";
+import { Section } from "../../ui/parts.tsx";
 import { NameField } from "../../ui/name-field.tsx";
 import { textOf } from "./study-parts.tsx";
 
@@ -19,9 +20,9 @@ export function KeepModel({ study, file, what }: { study: Study; file: string; w
     if (await attempt(async () => { await ask("PUT", `/models/${name}`, await textOf(study, file)); return true; })) setSaved(name);
   };
   return (
-    <>
+    <Section title={`Keep the ${what}`} label="keep">
       <form class="row" onSubmit={(event) => void keep(event)}><NameField value={name} onChange={setName} /><button type="submit" class="main">{`Save the ${what}`}</button></form>
       <p aria-live="polite">{saved ? <>{"Saved as "}<a href={to.model(saved)}>{saved}</a>{": for "}<a href={`${to.list("design")}?model=${saved}`}>design</a>{" and diagnosis."}</> : null}</p>
-    </>
+    </Section>
   );
 }

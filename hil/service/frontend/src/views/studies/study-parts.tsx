@@ -73,8 +73,20 @@ function Found({ study, children }: { study: Study; children: ComponentChildren 
         </div>
       ) : null}
       {children}
-      {files.length ? <Section title="Files" label="files"><p class="links">{files.map((name) => <a key={name} href={fileOf(study, name)} target="_blank" rel="noopener">{name === "report.html" ? `report of the ${study.kind}` : name}</a>)}</p></Section> : null}
+      {files.length ? <Files study={study} names={files} /> : null}
     </>
+  );
+}
+
+function Files({ study, names }: { study: Study; names: string[] }): JSX.Element {
+  const figures = names.filter((name) => /\.(png|svg)$/.test(name)), first = (name: string) => (name.startsWith("report") ? 0 : 1);
+  const others = names.filter((name) => !figures.includes(name)).sort((one, other) => first(one) - first(other));
+  const link = (name: string) => <a key={name} href={fileOf(study, name)} target="_blank" rel="noopener">{name === "report.html" ? `report of the ${study.kind}` : name}</a>;
+  return (
+    <Section title="Files" label="files">
+      <p class="links">{others.map(link)}</p>
+      {figures.length ? <details><summary>{`${figures.length} figures`}</summary><p class="links">{figures.map(link)}</p></details> : null}
+    </Section>
   );
 }
 

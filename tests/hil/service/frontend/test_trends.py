@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,13 +10,11 @@ from playwright import sync_api as playwright
 
 from hil.core.result import CriterionResult, RunResult
 from hil.service.store import BenchStore, NewRun, RunStore, open_database
-from tests.hil.service.looks import refuse_hard_to_use, roles_drawn
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, region, to
+from tests.hil.service.looks import expect_drawn, refuse_hard_to_use
 from tests.hil.service.served import Served, environment_of, served
 
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(shutil.which("chromium") is None, reason="there is no chromium"),
-]
+pytestmark = IN_A_BROWSER
 #: Value and device under test: eight of A, whose neighbours differ by 5 N m, and three of B between them.
 _RUNS = [(value, "A") for value in (300.0, 305.0) * 4] + [(310.0, "B")] * 3
 
@@ -52,17 +49,15 @@ def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 def test_cpk_stands_with_its_interval_and_count_for_all_and_for_one_device(
     page: playwright.Page, there: Served
 ) -> None:
-    page.goto(there.url)
-    expect = playwright.expect
-    figures = page.locator("#trend-figures")
-    expect(figures).to_contain_text("N m, limit ≤ 330, Cpk ")
-    expect(figures).to_contain_text(", 11 runs)")
-    assert roles_drawn(page, "trend", ("gain",)) == {"gain"}
+    to(page, there, "benches/sim")
+    trend = region(page, "Trend over runs of p")
+    expect(trend).to_contain_text("N m, limit ≤ 330 N m, Cpk ")
+    expect(trend).to_contain_text(", 11 runs)")
+    expect_drawn(trend, "gain")
     page.get_by_label("of", exact=True).select_option("A")
-    expect(figures).to_have_text("mean 303 N m, limit ≤ 330, Cpk 2.07 (95 %: 0.66 to 3.48, 8 runs)")
+    expect(trend).to_contain_text("mean 303 N m, limit ≤ 330 N m, Cpk 2.07 (95 %: 0.66 to 3.48, 8 runs)")
     page.get_by_label("of", exact=True).select_option("B")
-    expect(figures).to_have_text("mean 310 N m, limit ≤ 330, Cpk: too few runs (3 of 5)")
-    expect(page.locator("#trend")).to_have_attribute(
-        "aria-label", "s.peak over 3 runs: " + figures.inner_text()
-    )
+    figures = "mean 310 N m, limit ≤ 330 N m, Cpk: too few runs (3 of 5)"
+    expect(trend).to_contain_text(figures)
+    expect(trend.get_by_role("img", name=f"s.peak over 3 runs: {figures}")).to_be_visible()
     refuse_hard_to_use(page)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-import shutil
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -11,15 +11,12 @@ from typing import Any
 import pytest
 from playwright import sync_api as playwright
 
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, heading, region, to
 from tests.hil.service.jobs.test_studies import CHIRP
-from tests.hil.service.looks import refuse_hard_to_use, roles_drawn
+from tests.hil.service.looks import expect_drawn, refuse_hard_to_use
 from tests.hil.service.served import SHORT, Served, served
 
-playwright.expect.set_options(timeout=120_000)
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(shutil.which("chromium") is None, reason="there is no chromium"),
-]
+pytestmark = IN_A_BROWSER
 _BANDS = [[0.0, 1.0], [1.0, 3.0], [3.0, 6.0], [6.0, 10.0], [10.0, 15.0], [15.0, 30.0], [30.0, 125.0]]
 _CHANNELS = ["motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm"]
 
@@ -75,39 +72,48 @@ def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 def test_map_name_and_shrink_are_shown_and_the_separating_test_is_run(
     page: playwright.Page, there: Served
 ) -> None:
-    page.goto(there.url)
-    expect = playwright.expect
-    expect(page.get_by_role("heading", name="Free")).to_be_visible()
-    page.locator("#diagnose > summary").focus()
+    to(page, there, "diagnoses")
+    page.get_by_role("link", name="1", exact=True).first.focus()
     page.keyboard.press("Enter")
-    expect(page.locator("#diagnose-verdict")).to_have_text("named")
-    expect(page.locator("#diagnose-names")).to_contain_text("backlash (81 %): gap_rad = 0.02 ± 0.001")
-    expect(page.locator("#diagnose-map")).to_contain_text("40.0 → 1.10")
-    expect(page.locator("#diagnose-gaps")).to_contain_text("12 %1.1 %1 %")
+    expect(heading(page, re.compile("Diagnosis 1"))).to_be_visible()
+    effects = region(page, "Effects that the model lacks named")
+    expect(effects).to_contain_text("backlash (81 %): gap_rad = 0.02 ± 0.001")
+    expect(region(page, "Error over noise, before → after")).to_contain_text("40.0 → 1.10")
+    expect(region(page, "Gap, % of the signal")).to_contain_text("12 %1.1 %1 %")
     refuse_hard_to_use(page)
     page.get_by_role("button", name="Run the separating test for coulomb friction").click()
-    expect(page.locator("#diagnose-message")).to_contain_text("is queued: To tell friction from backlash")
-    expect(page.locator("#results tbody tr").first).to_contain_text("To tell friction from backlash")
+    expect(heading(page, re.compile("To tell friction from backlash"))).to_be_visible()
+    there.over(int(page.url.rpartition("/")[2]))
 
 
-def test_a_model_is_identified_from_a_run_and_saved(page: playwright.Page, there: Served) -> None:
-    page.goto(there.url)
-    expect = playwright.expect
-    page.locator("#identify > summary").click()
-    page.locator("#identify-runs").get_by_label("chirp").first.check()
+def test_a_model_is_identified_from_a_run_kept_designed_for_and_diagnosed(
+    page: playwright.Page, there: Served
+) -> None:
+    to(page, there, "runs/1")
+    page.get_by_role("link", name="Identify a model").click()
+    expect(page.get_by_label("run 1: chirp, sim")).to_be_checked()
     page.get_by_role("button", name="Identify", exact=True).click()
-    expect(page.locator("#identify-verdict")).to_contain_text("resonance 11", timeout=240_000)
-    expect(page.locator("#identify-parameters")).to_contain_text("gear ratio")
-    assert roles_drawn(page, "fit-motor", ("gain", "phase")) == {"gain", "phase"}
-    assert "gain" in roles_drawn(page, "fit-coherence", ("gain",))
-    page.locator("#identify-name").fill("found")
+    expect(page.get_by_text(re.compile("resonance 11"))).to_be_visible(timeout=240_000)
+    expect(region(page, "Parameters").locator("table")).to_contain_text("gear ratio")
+    gain = page.locator("figure.plot", has_text="Gain to motor speed")
+    expect_drawn(gain, "gain", "phase")
+    expect_drawn(page.locator("figure.plot", has_text="Coherence"), "gain")
+    page.get_by_label("Name", exact=True).fill("found")
     page.get_by_role("button", name="Save the model").click()
-    expect(page.locator("#identify-message")).to_contain_text("Saved as found")
+    expect(page.get_by_text("Saved as found")).to_be_visible()
     refuse_hard_to_use(page)
+    page.get_by_role("link", name="design", exact=True).click()
+    expect(page.get_by_label("Model")).to_have_value("found")
+    expect(region(page, "Margins and peaks").locator("table")).to_contain_text("gain margin")
+    page.go_back()
     page.once("dialog", lambda dialog: dialog.accept())
-    page.locator("#identify-remove").click()
-    expect(page.locator("#identify-row")).to_be_hidden()
-    expect(page.locator("#identify-found")).to_be_hidden()
-    page.locator("#design > summary").click()
-    page.locator("#design-model").select_option("found")
-    expect(page.locator("#design-figures")).to_contain_text("gain margin")
+    page.get_by_role("button", name="Remove").click()
+    expect(page.get_by_text("None yet.")).to_be_visible()
+    to(page, there, "runs/1")
+    page.get_by_role("link", name="Diagnose", exact=True).nth(1).click()
+    page.get_by_label("Model").select_option("found")
+    page.get_by_label("Time limit").fill("0.1")
+    page.get_by_role("button", name="Diagnose", exact=True).click()
+    expect(heading(page, re.compile("Diagnosis 3"))).to_be_visible()
+    page.get_by_role("button", name="Cancel").click()
+    expect(heading(page, re.compile("Diagnosis 3 (cancelled|ended)"))).to_be_visible()
