@@ -48,6 +48,7 @@ from hil.api_schemas.design import (
     ModelData,
     PlanCopyWanted,
 )
+from hil.api_schemas.notes import NoteData, NoteWanted, RunNotes
 from hil.api_schemas.run_list import FoundRuns, RunsWanted
 from hil.api_schemas.study import (
     DiagnosisData,
@@ -164,6 +165,18 @@ class Client(Requests):
     def run(self, run: int) -> RunData:
         """A run."""
         return self._one(RunData, "GET", f"/runs/{run}")
+
+    def notes(self, run: int) -> RunNotes:
+        """Notes and tags that people have added to a run."""
+        return self._one(RunNotes, "GET", f"/runs/{run}/notes")
+
+    def add_note(self, run: int, text: str) -> NoteData:
+        """Add a note to a run."""
+        return self._one(NoteData, "POST", f"/runs/{run}/notes", NoteWanted(text=text))
+
+    def tag(self, run: int, tag: str) -> None:
+        """Have a run found by a tag."""
+        self._done("PUT", f"/runs/{run}/tags/{part(tag)}")
 
     def queue(self, wanted: RunWanted) -> RunData:
         """Queue a run; with a key, a repeated request queues no second."""

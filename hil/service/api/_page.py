@@ -1,8 +1,8 @@
 """The page that Vite builds (hil/service/frontend): every address that is not the API's gives one document.
 
 What an address shows is the page's own matter, so that each can be sent, kept and loaded again. The document
-is never kept by a browser, its parts always: their names change with their content. Nothing comes from another
-network.
+is never kept by a browser, its parts always: their names change with their content. Nothing comes from
+another network.
 """
 
 from __future__ import annotations

@@ -38,3 +38,8 @@ def heading(page: playwright.Page, name: str | re.Pattern[str]) -> playwright.Lo
 def region(page: playwright.Page, name: str) -> playwright.Locator:
     """A part of a view, by its heading."""
     return page.get_by_role("region", name=name, exact=True)
+
+
+def choice(page: playwright.Page, name: str) -> playwright.Locator:
+    """A list to choose from, by what stands before it."""
+    return page.get_by_role("combobox", name=name, exact=True)

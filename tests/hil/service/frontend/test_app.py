@@ -10,7 +10,7 @@ import pytest
 from playwright import sync_api as playwright
 
 from hil.service.serving import make_token
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, heading, region, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
 from tests.hil.service.looks import expect_drawn, refuse_hard_to_use
 from tests.hil.service.served import ASKING, SHORT, Served, environment_of, served
 
@@ -38,7 +38,7 @@ def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 
 def test_a_plan_is_foreseen_queued_watched_stopped_and_found(page: playwright.Page, there: Served) -> None:
     to(page, there, "benches/sim")
-    page.get_by_label("Plan", exact=True).select_option("asking")
+    choice(page, "Plan").select_option("asking")
     expect(page.locator(".forecast")).to_contain_text("Fits the bench", timeout=180_000)
     page.get_by_role("button", name="Queue the run").click()
     expect(heading(page, re.compile("A plan that asks"))).to_be_visible()
@@ -61,7 +61,7 @@ def test_a_plan_is_foreseen_queued_watched_stopped_and_found(page: playwright.Pa
 
 def test_a_run_is_queued_and_ended_by_keyboard_alone(page: playwright.Page, there: Served) -> None:
     to(page, there, "benches/sim")
-    plan = page.get_by_label("Plan", exact=True)
+    plan = choice(page, "Plan")
     expect(plan).to_contain_text("A plan that asks")
     plan.focus()
     page.keyboard.press("Home")
@@ -85,7 +85,9 @@ def test_a_service_without_news_is_not_taken_for_lost(page: playwright.Page, the
     page.evaluate(
         """async () => {
           const events = new EventSource("/api/v1/benches/sim/live");
-          for (let at = 0; at < 2; at += 1) await new Promise((heard) => events.addEventListener("here", heard, { once: true }));
+          const here = () => new Promise((heard) => events.addEventListener("here", heard, { once: true }));
+          await here();
+          await here();
           events.close();
         }"""  # twice ten seconds without news: longer than the page waits for a word
     )
@@ -194,8 +196,8 @@ def test_runs_are_filtered_sorted_and_compared(page: playwright.Page, there: Ser
     expect(plots.first.get_by_role("img", name=_PEAKS)).to_be_visible()
     for at in range(3):
         expect_drawn(plots.nth(at), "gain", "phase")
-    page.get_by_label("Stretch").select_option("whole")
-    page.get_by_label("Channel", exact=True).select_option("driving_torque_ref_nm")
+    choice(page, "Stretch").select_option("whole")
+    choice(page, "Channel").select_option("driving_torque_ref_nm")
     expect(page.get_by_role("img", name=_ASKED)).to_be_visible()
     refuse_hard_to_use(page)
 

@@ -1,4 +1,4 @@
-"""Campaigns on the page: begun by the form or from files, watched, cancelled, gone on with, and what came of them."""
+"""Campaigns on the page: begun by form or files, watched, cancelled, gone on with, and what came of them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from playwright import sync_api as playwright
 
 from tests.hil.analysis.tuning.trials import PLAN
 from tests.hil.campaign.short import CAMPAIGN
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, heading, region, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
 from tests.hil.service.jobs.test_campaigns import LONG
 from tests.hil.service.looks import expect_drawn, refuse_hard_to_use
 from tests.hil.service.served import Served, served
@@ -32,7 +32,7 @@ def test_campaigns_of_files_are_begun_watched_cancelled_and_gone_on_with(
     (tmp_path / "short.yaml").write_text(PLAN)
     (tmp_path / "campaign.yaml").write_text(CAMPAIGN + "pass_share: 0.5\n")
     to(page, there, "campaigns")
-    text, chosen = page.get_by_label("Content"), page.get_by_label("Campaign", exact=True)
+    text, chosen = page.get_by_label("Content"), choice(page, "Campaign")
     chosen.select_option("robustness")
     expect(text).to_have_value(re.compile(r"name: robustness"))
     chosen.select_option("own file")
@@ -86,10 +86,10 @@ def test_distributions_what_decides_and_worst_cars_are_shown(page: playwright.Pa
 def test_a_campaign_is_begun_by_the_form_and_removed(page: playwright.Page, there: Served) -> None:
     there.give("short", PLAN)
     to(page, there, "campaigns")
-    expect(page.get_by_label("Plan", exact=True)).to_contain_text("short.yaml")
+    expect(choice(page, "Plan")).to_contain_text("short.yaml")
     refuse_hard_to_use(page)
     page.get_by_label("Name", exact=True).fill("by_form")
-    page.get_by_label("Plan", exact=True).select_option("short.yaml")
+    choice(page, "Plan").select_option("short.yaml")
     page.get_by_label("gain_stabilization").check()
     page.get_by_label("Draws").fill("2")
     page.get_by_text("What differs from car to car").click()

@@ -11,14 +11,15 @@ from playwright import sync_api as playwright
 
 from hil.core.controller import load_controller
 from hil.service.serving import make_token
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, heading, region, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
 from tests.hil.service.looks import expect_drawn, refuse_hard_to_use
 from tests.hil.service.served import SHORT, Served, environment_of, served
 
 pytestmark = IN_A_BROWSER
 #: Milliseconds from an input to the figures that follow it.
 _FOLLOWED = """async ([text]) => {
-  const input = document.getElementById("lead_deg"), table = document.querySelector("#section-figures + *, section[aria-labelledby=section-figures] table");
+  const input = document.getElementById("lead_deg");
+  const table = document.querySelector("section[aria-labelledby=section-figures] table");
   const begun = performance.now();
   const followed = new Promise((done) => new MutationObserver(() => done(performance.now() - begun))
     .observe(table, { subtree: true, characterData: true, childList: true }));
@@ -62,7 +63,7 @@ def test_what_is_moved_is_followed_saved_and_run(
         page.get_by_role("button", name="Download controller.toml").click()
     download.value.save_as(tmp_path / "controller.toml")
     assert load_controller(tmp_path / "controller.toml").name == "softer"
-    page.get_by_label("in the plan").select_option("short")
+    choice(page, "in the plan").select_option("short")
     page.get_by_role("button", name="Make the plan").click()
     expect(heading(page, re.compile("A short plan, short-softer"))).to_be_visible()
     button = page.get_by_role("button", name="Queue the run")
@@ -79,7 +80,7 @@ def test_drafts_are_laid_over_each_other_and_stand_in_the_address(
     expect(figures).to_contain_text("gain margin")
     page.get_by_role("button", name="Add another").focus()
     page.keyboard.press("Enter")
-    expect(page.get_by_label("Stabilisation")).to_have_value("gain")
+    expect(choice(page, "Stabilisation")).to_have_value("gain")
     expect(page.locator("#lead_deg")).to_be_hidden()
     expect(page.locator("#notch_hz")).to_have_attribute("placeholder", re.compile(r"1[01]\.\d\d"))
     nyquist = page.locator("figure.plot").first

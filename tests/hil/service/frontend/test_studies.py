@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from playwright import sync_api as playwright
 
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, heading, region, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
 from tests.hil.service.jobs.test_studies import CHIRP
 from tests.hil.service.looks import expect_drawn, refuse_hard_to_use
 from tests.hil.service.served import SHORT, Served, served
@@ -81,7 +81,7 @@ def test_map_name_and_shrink_are_shown_and_the_separating_test_is_run(
     expect(region(page, "Error over noise, before → after")).to_contain_text("40.0 → 1.10")
     expect(region(page, "Gap, % of the signal")).to_contain_text("12 %1.1 %1 %")
     refuse_hard_to_use(page)
-    page.get_by_role("button", name="Run the separating test for coulomb friction").click()
+    page.get_by_role("button", name="Run the separating test on sim for coulomb friction").click()
     expect(heading(page, re.compile("To tell friction from backlash"))).to_be_visible()
     there.over(int(page.url.rpartition("/")[2]))
 
@@ -103,7 +103,7 @@ def test_a_model_is_identified_from_a_run_kept_designed_for_and_diagnosed(
     expect(page.get_by_text("Saved as found")).to_be_visible()
     refuse_hard_to_use(page)
     page.get_by_role("link", name="design", exact=True).click()
-    expect(page.get_by_label("Model")).to_have_value("found")
+    expect(choice(page, "Model")).to_have_value("found")
     expect(region(page, "Margins and peaks").locator("table")).to_contain_text("gain margin")
     page.go_back()
     page.once("dialog", lambda dialog: dialog.accept())
@@ -111,7 +111,7 @@ def test_a_model_is_identified_from_a_run_kept_designed_for_and_diagnosed(
     expect(page.get_by_text("None yet.")).to_be_visible()
     to(page, there, "runs/1")
     page.get_by_role("link", name="Diagnose", exact=True).nth(1).click()
-    page.get_by_label("Model").select_option("found")
+    choice(page, "Model").select_option("found")
     page.get_by_label("Time limit").fill("0.1")
     page.get_by_role("button", name="Diagnose", exact=True).click()
     expect(heading(page, re.compile("Diagnosis 3"))).to_be_visible()

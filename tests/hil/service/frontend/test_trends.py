@@ -10,7 +10,7 @@ from playwright import sync_api as playwright
 
 from hil.core.result import CriterionResult, RunResult
 from hil.service.store import BenchStore, NewRun, RunStore, open_database
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, region, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, region, to
 from tests.hil.service.looks import expect_drawn, refuse_hard_to_use
 from tests.hil.service.served import Served, environment_of, served
 
@@ -54,9 +54,9 @@ def test_cpk_stands_with_its_interval_and_count_for_all_and_for_one_device(
     expect(trend).to_contain_text("N m, limit ≤ 330 N m, Cpk ")
     expect(trend).to_contain_text(", 11 runs)")
     expect_drawn(trend, "gain")
-    page.get_by_label("of", exact=True).select_option("A")
+    choice(page, "of").select_option("A")
     expect(trend).to_contain_text("mean 303 N m, limit ≤ 330 N m, Cpk 2.07 (95 %: 0.66 to 3.48, 8 runs)")
-    page.get_by_label("of", exact=True).select_option("B")
+    choice(page, "of").select_option("B")
     figures = "mean 310 N m, limit ≤ 330 N m, Cpk: too few runs (3 of 5)"
     expect(trend).to_contain_text(figures)
     expect(trend.get_by_role("img", name=f"s.peak over 3 runs: {figures}")).to_be_visible()

@@ -14,8 +14,8 @@ import { Badge, Moment, Scroll, Section, verdictOf } from "../ui/parts.tsx";
 import { Banner, LostNotice } from "./bench-banner.tsx";
 import { Criteria } from "./criteria.tsx";
 import { Queue } from "./queue.tsx";
-import { StartPlan } from "./start-plan.tsx";
-import { Trends } from "./trends.tsx";
+import { StartPlan } from "./plans/start-plan.tsx";
+import { Trends } from "./trends/trends.tsx";
 
 const AGAIN_MS = 2000;
 const LATEST = 10;

@@ -10,7 +10,7 @@ import { useMay } from "../session.ts";
 import { Heading, inWords, Loaded, Scroll, Section } from "../ui/parts.tsx";
 import { GiveFile } from "./give-file.tsx";
 import { UseController } from "./design/use-controller.tsx";
-import { FileText } from "./plans.tsx";
+import { FileText } from "./plans/plans.tsx";
 
 export function Models(): JSX.Element {
   const models = useData<Model[]>("/models"), may = useMay();

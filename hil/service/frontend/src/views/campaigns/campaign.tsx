@@ -7,7 +7,7 @@ import { to } from "../../addresses.ts";
 import { useData } from "../../data.ts";
 import { percent } from "../../format.ts";
 import { go } from "../../router.ts";
-import { Badge, Facts, Heading, Loaded, Moment, Section } from "../../ui/parts.tsx";
+import { Badge, Facts, FileLink, Heading, Loaded, Moment, Section } from "../../ui/parts.tsx";
 import { CampaignActions, Progress, Shares, stateOf } from "./campaign-parts.tsx";
 import { Findings } from "./findings.tsx";
 
@@ -36,7 +36,7 @@ function Found({ campaign }: { campaign: Campaign }): JSX.Element {
       <Section title="Simulated" label="progress"><Progress of={campaign} /></Section>
       <Section title="Share that passes" label="shares"><Shares of={campaign} /></Section>
       {done ? <Loaded of={findings} what="distributions">{(found) => <Findings of={found} />}</Loaded> : null}
-      {files.length ? <Section title="Files" label="files"><p class="links">{files.map((name) => <a key={name} href={`${API}/campaigns/${campaign.id}/files/${encodeURIComponent(name)}`} target="_blank" rel="noopener">{NAMES[name] ?? name}</a>)}</p></Section> : null}
+      {files.length ? <Section title="Files" label="files"><p class="links">{files.map((name) => <FileLink key={name} name={name} href={`${API}/campaigns/${campaign.id}/files/${encodeURIComponent(name)}`}>{NAMES[name] ?? name}</FileLink>)}</p></Section> : null}
     </>
   );
 }

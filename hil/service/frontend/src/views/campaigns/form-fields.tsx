@@ -53,16 +53,17 @@ function useOffered(): Offered {
 
 function Plain({ name, property, value, offered, required, onChange }: { name: string; property: Property; value: string; offered: string[] | undefined; required: boolean; onChange: (text: string) => void }): JSX.Element {
   const usual = property.default === undefined || property.default === null || property.default === "" ? "" : String(property.default), bounds = boundsOf(property);
+  const about = `about-${name}`, described = property.description && !offered ? { "aria-describedby": about } : {};
   const take = (event: { currentTarget: HTMLInputElement | HTMLSelectElement }) => onChange(event.currentTarget.value);
   return (
-    <label class="field" title={offered ? undefined : property.description}>{inWords(name).replace(/^./, (letter) => letter.toUpperCase())}
+    <div><label class="field">{inWords(name).replace(/^./, (letter) => letter.toUpperCase())}
       {offered
         ? <select value={value} required={required} onChange={take}><option value="">{usual || (required ? "choose …" : "the usual one")}</option>{offered.map((one) => <option key={one}>{one}</option>)}</select>
         : isNumber(property)
-          ? <input type="number" step="any" {...bounds} placeholder={usual} value={value} onInput={take} />
-          : <input required={required} {...(name === "name" ? { pattern: "[A-Za-z0-9][A-Za-z0-9_.\\-]*" } : {})} placeholder={usual} autocomplete="off" value={value} onInput={take} />}
-      {property.description && !offered ? <span class="reason">{property.description}</span> : null}
-    </label>
+          ? <input type="number" step="any" {...described} {...bounds} placeholder={usual} value={value} onInput={take} />
+          : <input required={required} {...described} {...(name === "name" ? { pattern: "[A-Za-z0-9][A-Za-z0-9_.\\-]*" } : {})} placeholder={usual} autocomplete="off" value={value} onInput={take} />}
+      </label>{property.description && !offered ? <span class="reason" id={about}>{property.description}</span> : null}
+    </div>
   );
 }
 

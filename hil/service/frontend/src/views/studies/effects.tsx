@@ -50,7 +50,7 @@ export function Alternatives({ of }: { of: Diagnosis }): JSX.Element {
       <ul class="spaced">
         {of.alternatives.map((one) => (
           <li key={one.id}>{`${inWords(one.id)} (${percentOf(one.confidence)}); test to distinguish them: ${one.separating_test} `}
-            {runs(one) ? <button type="button" disabled={!bench} aria-label={`Run the separating test for ${inWords(one.id)}`} onClick={() => void run(one)}>{`Run the separating test on ${bench}`}</button> : null}
+            {runs(one) ? <button type="button" disabled={!bench} aria-label={`Run the separating test on ${bench} for ${inWords(one.id)}`} onClick={() => void run(one)}>{`Run the separating test on ${bench}`}</button> : null}
           </li>
         ))}
       </ul>

@@ -7,7 +7,7 @@ import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
 import { go } from "../../router.ts";
 import { useMay } from "../../session.ts";
-import { Badge, Facts, Heading, Loaded, Moment, Scroll, Section } from "../../ui/parts.tsx";
+import { Badge, Facts, FileLink, Heading, Loaded, Moment, Scroll, Section } from "../../ui/parts.tsx";
 
 const AGAIN_MS = 2000;
 const MOST_RUNS = 12;
@@ -81,7 +81,7 @@ function Found({ study, children }: { study: Study; children: ComponentChildren 
 function Files({ study, names }: { study: Study; names: string[] }): JSX.Element {
   const figures = names.filter((name) => /\.(png|svg)$/.test(name)), first = (name: string) => (name.startsWith("report") ? 0 : 1);
   const others = names.filter((name) => !figures.includes(name)).sort((one, other) => first(one) - first(other));
-  const link = (name: string) => <a key={name} href={fileOf(study, name)} target="_blank" rel="noopener">{name === "report.html" ? `report of the ${study.kind}` : name}</a>;
+  const link = (name: string) => <FileLink key={name} name={name} href={fileOf(study, name)}>{name === "report.html" ? `report of the ${study.kind}` : name}</FileLink>;
   return (
     <Section title="Files" label="files">
       <p class="links">{others.map(link)}</p>

@@ -2,21 +2,22 @@
 
 import type { JSX } from "preact";
 import { useEffect } from "preact/hooks";
-import { post } from "../api/client.ts";
-import type { Run, RunView as View } from "../api/types.ts";
-import { to } from "../addresses.ts";
-import { attempt, useData } from "../data.ts";
-import { figure } from "../format.ts";
-import { useLive } from "../live.ts";
-import { Board } from "../plot/board.tsx";
-import { rangeText } from "../plot/range.ts";
-import { go, setQuery } from "../router.ts";
-import { useMay } from "../session.ts";
-import { benchInSight } from "../shell/stop.tsx";
-import { useStore } from "../store.ts";
-import { Badge, Facts, Heading, Loaded, Moment, Section, verdictOf } from "../ui/parts.tsx";
-import { Banner, LostNotice } from "./bench-banner.tsx";
-import { Criteria } from "./criteria.tsx";
+import { post } from "../../api/client.ts";
+import type { Run, RunView as View } from "../../api/types.ts";
+import { to } from "../../addresses.ts";
+import { attempt, useData } from "../../data.ts";
+import { figure } from "../../format.ts";
+import { useLive } from "../../live.ts";
+import { Board } from "../../plot/board.tsx";
+import { rangeText } from "../../plot/range.ts";
+import { go, setQuery } from "../../router.ts";
+import { useMay } from "../../session.ts";
+import { benchInSight } from "../../shell/stop.tsx";
+import { useStore } from "../../store.ts";
+import { Badge, Facts, Heading, Loaded, Moment, Section, verdictOf } from "../../ui/parts.tsx";
+import { Banner, LostNotice } from "../bench-banner.tsx";
+import { Criteria } from "../criteria.tsx";
+import { Notes } from "./notes.tsx";
 import { Downloads, Evidence, Happenings } from "./run-parts.tsx";
 
 const OVER = ["ended", "interrupted", "cancelled"];
@@ -47,6 +48,7 @@ function Found({ run }: { run: Run }): JSX.Element {
       ) : isLive ? <p class="quiet">Nothing has been measured yet.</p> : recorded ? <Loaded of={view} what="the recording">{() => null}</Loaded> : null}
       {isLive || criteria.length ? <Section title="Criteria" label="criteria"><Criteria of={criteria} onSegment={(segment) => view.data && showSegment(view.data, segment)} /></Section> : null}
       {view.data ? <Happenings view={view.data} /> : null}
+      <Notes run={run.id} />
       {isOver ? <Downloads run={run} /> : null}
       {view.data?.evidence ? <Evidence of={view.data.evidence} /> : null}
     </>

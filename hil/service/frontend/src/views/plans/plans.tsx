@@ -2,20 +2,23 @@
 
 import type { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
-import { ask, getText } from "../api/client.ts";
-import type { Plan } from "../api/types.ts";
-import { to } from "../addresses.ts";
-import { attempt, useData } from "../data.ts";
-import { limitText } from "../format.ts";
-import { go } from "../router.ts";
-import { useMay } from "../session.ts";
-import { Heading, Loaded, Scroll, Section } from "../ui/parts.tsx";
+import { ask, getText } from "../../api/client.ts";
+import type { Plan } from "../../api/types.ts";
+import { to } from "../../addresses.ts";
+import { attempt, useData } from "../../data.ts";
+import { limitText } from "../../format.ts";
+import { go, useQuery } from "../../router.ts";
+import { useMay } from "../../session.ts";
+import { Heading, Loaded, Scroll, Section } from "../../ui/parts.tsx";
+import { EditPlan, PlanEditor } from "./plan-editor.tsx";
+import { renamed, START } from "./plan-text.ts";
 import { StartPlan } from "./start-plan.tsx";
-import { GiveFile } from "./give-file.tsx";
+import { GiveFile } from "../give-file.tsx";
 
 export function Plans(): JSX.Element {
-  const plans = useData<Plan[]>("/plans");
+  const plans = useData<Plan[]>("/plans"), [query] = useQuery();
   const may = useMay();
+  if (query.get("write") === "new" && may("engineer")) return <><Heading kind={<a href={to.list("plans")}>Plans</a>}>Write a plan</Heading><PlanEditor text={START} builtIn={false} /></>;
   return (
     <>
       <Heading>Plans</Heading>
@@ -35,6 +38,7 @@ export function Plans(): JSX.Element {
           </Scroll>
         )}
       </Loaded>
+      {may("engineer") ? <p><a href={`${to.list("plans")}?write=new`}>Write a plan</a></p> : null}
       {may("engineer") ? <Section title="Give a plan" label="give"><GiveFile kind="plan" path="/plans" ending=".yaml" onGiven={(name) => go(to.plan(name))} /></Section> : null}
     </>
   );
@@ -46,18 +50,20 @@ export function PlanView({ name }: { name: string }): JSX.Element {
 }
 
 function Found({ plan }: { plan: Plan }): JSX.Element {
-  const may = useMay();
+  const may = useMay(), [query] = useQuery();
   const remove = async () => {
     if (!confirm(`Remove the plan ${plan.name}? Its runs stay.`)) return;
     if (await attempt(async () => { await ask("DELETE", `/plans/${encodeURIComponent(plan.name)}`); return true; })) go(to.list("plans"));
   };
   const variables = Object.entries(plan.variables);
+  const edited = (text: string) => (plan.built_in ? renamed(text, `${plan.name}_copy`) : text);
+  if (query.get("write") === "on" && may("engineer")) return <><Heading kind={<a href={to.plan(plan.name)}>{plan.name}</a>}>{plan.built_in ? "A copy of this plan" : "Edit the plan"}</Heading><EditPlan name={plan.name} builtIn={plan.built_in} copied={edited} /></>;
   return (
     <>
       <Heading kind={`${plan.built_in ? "Built-in plan" : "Given plan"} ${plan.name}`}>{plan.title || plan.name}</Heading>
       {plan.description ? <p>{plan.description}</p> : null}
       {plan.hazard ? <p class="bad">{`Hazardous: ${plan.hazard}. A second person approves each run.`}</p> : null}
-      <p class="links"><a href={`${to.list("runs")}?plan=${encodeURIComponent(plan.name)}`}>All runs of this plan</a></p>
+      <p class="links"><a href={`${to.list("runs")}?plan=${encodeURIComponent(plan.name)}`}>All runs of this plan</a>{may("engineer") ? <a href={`${to.plan(plan.name)}?write=on`}>{plan.built_in ? "Edit a copy" : "Edit"}</a> : null}</p>
       <div class="columns">
         <div>
           {variables.length ? (

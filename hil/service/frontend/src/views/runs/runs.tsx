@@ -2,12 +2,12 @@
 
 import type { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
-import type { FoundRun, FoundRuns } from "../api/types.ts";
-import { to } from "../addresses.ts";
-import { useData } from "../data.ts";
-import { figure, limitText, whole } from "../format.ts";
-import { go, useQuery } from "../router.ts";
-import { Badge, Heading, Moment, Scroll, verdictOf } from "../ui/parts.tsx";
+import type { FoundRun, FoundRuns } from "../../api/types.ts";
+import { to } from "../../addresses.ts";
+import { useData } from "../../data.ts";
+import { figure, limitText, whole } from "../../format.ts";
+import { go, useQuery } from "../../router.ts";
+import { Badge, Heading, Moment, Scroll, verdictOf } from "../../ui/parts.tsx";
 import { RunFilters } from "./run-filters.tsx";
 import { PAGE, queryFrom, sorted, toAddress, toService, type Order, type RunsQuery } from "./runs-query.ts";
 
@@ -88,7 +88,7 @@ function Row({ found, withValue, chosen, onChoose }: { found: FoundRun; withValu
     <tr>
       <td><input type="checkbox" aria-label={`Compare run ${run.id}`} checked={chosen} onChange={() => onChoose(run.id)} /></td>
       <td class="number"><a href={to.run(run.id)}>{run.id}</a></td>
-      <th scope="row"><a href={to.run(run.id)} class="quietly">{run.title || run.plan}</a>{about ? <span class="reason">{about}</span> : null}</th>
+      <th scope="row"><a href={to.run(run.id)} class="quietly">{run.title || run.plan}</a>{found.tags?.map((tag) => <span class="tag" key={tag}>{tag}</span>)}{about ? <span class="reason">{about}</span> : null}</th>
       <td><Badge kind={verdictOf(run)} />{run.safe_state === "not_confirmed" ? <span class="bad"> NOT CONFIRMED SAFE</span> : null}</td>
       {withValue ? <td class={`number ${found.criterion_verdict === "fail" ? "bad" : ""}`}>{figure(found.value, found.unit)}<span class="reason">{limitText(found.upper, found.lower)}</span></td> : null}
       <td><a href={to.bench(run.bench)}>{run.bench}</a></td>

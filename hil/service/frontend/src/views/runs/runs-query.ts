@@ -3,7 +3,7 @@
 export const ORDERS = ["run", "plan", "bench", "dut", "verdict", "ended", "value"] as const;
 export type Order = (typeof ORDERS)[number];
 
-export const FILTERS = ["plan", "bench", "dut", "verdict", "requested_by", "state"] as const;
+export const FILTERS = ["plan", "bench", "dut", "verdict", "requested_by", "state", "tag"] as const;
 export type Filter = (typeof FILTERS)[number];
 
 export const PAGE = 50;

@@ -2,12 +2,12 @@
 
 import type { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
-import type { RunChoices } from "../api/types.ts";
-import { useData } from "../data.ts";
-import { inWords } from "../ui/parts.tsx";
+import type { RunChoices } from "../../api/types.ts";
+import { useData } from "../../data.ts";
+import { inWords } from "../../ui/parts.tsx";
 import { FILTERS, type Filter, type RunsQuery } from "./runs-query.ts";
 
-const NAMES: Record<Filter, string> = { plan: "Plan", bench: "Bench", dut: "Device", verdict: "Verdict", requested_by: "Asked for by", state: "State" };
+const NAMES: Record<Filter, string> = { plan: "Plan", bench: "Bench", dut: "Device", verdict: "Verdict", requested_by: "Asked for by", state: "State", tag: "Tag" };
 const VERDICTS = ["pass", "fail", "error", "done"];
 const STATES = ["waiting_approval", "queued", "running", "ended", "interrupted", "cancelled"];
 const WAIT_MS = 300;
@@ -15,7 +15,7 @@ const WAIT_MS = 300;
 export function RunFilters({ query, onChange }: { query: RunsQuery; onChange: (query: RunsQuery) => void }): JSX.Element {
   const choices = useData<RunChoices>(`/run-list/choices${query.filters.plan ? `?plan=${encodeURIComponent(query.filters.plan)}` : ""}`).data;
   const offered: Record<Filter, string[]> = {
-    plan: choices?.plans ?? [], bench: choices?.benches ?? [], dut: choices?.duts ?? [], requested_by: choices?.people ?? [], verdict: VERDICTS, state: STATES,
+    plan: choices?.plans ?? [], bench: choices?.benches ?? [], dut: choices?.duts ?? [], requested_by: choices?.people ?? [], verdict: VERDICTS, state: STATES, tag: choices?.tags ?? [],
   };
   const filtered = FILTERS.some((name) => query.filters[name]) || query.text || query.since || query.until || query.criterion;
   const clear = () => onChange({ ...query, filters: Object.fromEntries(FILTERS.map((name) => [name, ""])) as Record<Filter, string>, text: "", since: "", until: "", criterion: "", above: "", below: "" });

@@ -1,12 +1,12 @@
 // What a run has left: events, files, and what holds them together.
 
 import type { JSX } from "preact";
-import { fileUrl } from "../api/client.ts";
-import type { Run, RunView } from "../api/types.ts";
-import { fixed, joined } from "../format.ts";
-import { rangeText } from "../plot/range.ts";
-import { setQuery } from "../router.ts";
-import { Scroll, Section } from "../ui/parts.tsx";
+import { fileUrl } from "../../api/client.ts";
+import type { Run, RunView } from "../../api/types.ts";
+import { fixed, joined } from "../../format.ts";
+import { rangeText } from "../../plot/range.ts";
+import { setQuery } from "../../router.ts";
+import { FileLink, Scroll, Section } from "../../ui/parts.tsx";
 
 const NAMES: Record<string, string> = {
   "report.html": "report", "report.pdf": "report as PDF", "recording.mcap": "recording (MCAP)", "result.json": "result (JSON)", "junit.xml": "JUnit", "plan.yaml": "plan as executed", "log.txt": "log",
@@ -47,7 +47,7 @@ export function Downloads({ run }: { run: Run }): JSX.Element {
   return (
     <Section title="Files" label="files">
       {sorted.length
-        ? <p class="links">{sorted.map((name) => <a key={name} href={fileUrl(run.id, name)} target="_blank" rel="noopener">{NAMES[name] ?? name}</a>)}</p>
+        ? <p class="links">{sorted.map((name) => <FileLink key={name} name={name} href={fileUrl(run.id, name)}>{NAMES[name] ?? name}</FileLink>)}</p>
         : <p class="quiet">This run has left no files.</p>}
     </Section>
   );
