@@ -90,7 +90,7 @@ def test_a_campaign_is_begun_by_the_form_and_removed(page: playwright.Page, ther
     refuse_hard_to_use(page)
     page.get_by_label("Name", exact=True).fill("by_form")
     choice(page, "Plan").select_option("short.yaml")
-    page.get_by_label("gain_stabilization").check()
+    page.get_by_role("checkbox", name="gain_stabilization").check()
     page.get_by_label("Draws").fill("2")
     page.get_by_text("What differs from car to car").click()
     page.get_by_label("tyre stiffness").fill("0.2")

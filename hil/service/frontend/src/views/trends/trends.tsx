@@ -49,7 +49,12 @@ function Drifting({ of, chosen, onChoose }: { of: Trend[]; chosen: string; onCho
   if (!drifting.length) return null;
   return (
     <p class="notice" role="status">{"May drift: "}
-      {drifting.map((one) => <button type="button" class="plain" key={one.criterion} aria-pressed={one.criterion === chosen} onClick={() => onChoose(one.criterion)}>{`${one.criterion} (${(one.signals ?? []).filter((signal) => signal.present).map((signal) => signal.text).join("; ")})`}</button>)}
+      {drifting.map((one) => <button type="button" class="plain" key={one.criterion} aria-pressed={one.criterion === chosen} onClick={() => onChoose(one.criterion)}>{`${one.criterion} (${reasonOf(one)})`}</button>)}
     </p>
   );
+}
+
+function reasonOf({ signals = [] }: Trend): string {
+  const present = signals.filter((signal) => signal.present), more = present.length - 1;
+  return `${present[0]?.text ?? ""}${more > 0 ? `, and ${more} more` : ""}`;
 }
