@@ -2,6 +2,7 @@
 
 import assert from "node:assert/strict";
 import test from "node:test";
+import { againWith, valuesFrom } from "../../../../hil/service/frontend/src/views/plans/start-values.ts";
 import { lineAt, nameIn, renamed, START } from "../../../../hil/service/frontend/src/views/plans/plan-text.ts";
 
 test("the name is that which stands at the beginning of a line", () => {
@@ -15,4 +16,11 @@ test("a copy has another name and nothing else", () => assert.equal(renamed("nam
 test("a line is found by its number, the last one beyond the end", () => {
   const text = "a\nbcd\n\nef";
   assert.deepEqual([1, 2, 3, 4, 9, 0].map((line) => text.slice(...lineAt(text, line))), ["a", "bcd", "", "ef", "ef", "a"]);
+});
+
+test("what a run was started with is read from the address of its plan", () => {
+  const address = againWith({ plan: "short", bench: "rear axle", values: { torque_nm: 150, slope: -0.5 } });
+  assert.equal(address.split("?")[0], "/plans/short");
+  assert.deepEqual(valuesFrom(new URLSearchParams(address.split("?")[1])), { bench: "rear axle", values: { torque_nm: "150", slope: "-0.5" } });
+  assert.deepEqual(valuesFrom(new URLSearchParams("value.a=much&b=1")), { bench: "", values: {} });
 });

@@ -40,6 +40,7 @@ def test_a_plan_is_foreseen_queued_watched_stopped_and_found(page: playwright.Pa
     to(page, there, "benches/sim")
     choice(page, "Plan").select_option("asking")
     expect(page.locator(".forecast")).to_contain_text("Fits the bench", timeout=180_000)
+    expect(page.locator(".forecast")).to_contain_text("motor_speed_rad_s")
     page.get_by_role("button", name="Queue the run").click()
     expect(heading(page, re.compile("A plan that asks"))).to_be_visible()
     run = int(page.url.rpartition("/")[2])
@@ -50,6 +51,7 @@ def test_a_plan_is_foreseen_queued_watched_stopped_and_found(page: playwright.Pa
     there.over(run)
     expect(page.get_by_text("error", exact=True)).to_be_visible()
     expect(region(page, "Segments and events")).to_contain_text("safe_state")
+    expect(page.locator(".facts")).to_contain_text("safe stateconfirmed")
     with page.expect_popup() as report:
         page.get_by_role("link", name="report", exact=True).click()
     expect(heading(report.value, re.compile("A plan that asks"))).to_be_visible()
@@ -137,6 +139,8 @@ def test_each_address_shows_its_view_again_after_a_reload_and_is_easy_to_use(
     expect(heading(page, name)).to_be_visible()
     assert (page.title(), page.url) == (title, f"{there.url}/{address}")
     expect(page.locator("main").get_by_text("Loading")).to_have_count(0)
+    page.mouse.wheel(0, 5000)
+    expect(page.get_by_role("button", name=re.compile("Emergency stop"))).to_be_in_viewport()
     refuse_hard_to_use(page)
 
 
@@ -231,6 +235,20 @@ def test_what_is_seen_of_a_run_stands_in_its_address(page: playwright.Page, ther
     expect(cursors).to_have_text(re.compile("shaft torque"))
     expect(plots.first).to_contain_text("wheel speed left")
     page.wait_for_function("text => document.querySelector('.cursors table')?.innerText === text", arg=seen)
+
+
+def test_a_run_is_asked_for_again_with_another_value(page: playwright.Page, there: Served) -> None:
+    to(page, there, "runs/2")
+    page.get_by_role("link", name="Again with other values").click()
+    expect(heading(page, re.compile("A short plan"))).to_be_visible()
+    value = page.get_by_role("spinbutton", name="torque_nm in N m")
+    expect(value).to_have_value("150")
+    value.fill("120")
+    button = page.get_by_role("button", name="Queue the run")
+    expect(button).to_be_enabled(timeout=180_000)
+    button.click()
+    expect(page.locator(".facts")).to_contain_text("torque_nm = 120")
+    there.over(int(page.url.rpartition("/")[2]))
 
 
 def test_who_has_no_token_can_stop_and_see_nothing(tmp_path: Path, page: playwright.Page) -> None:

@@ -12,6 +12,7 @@ import { useMay } from "../../session.ts";
 import { Heading, Loaded, Scroll, Section } from "../../ui/parts.tsx";
 import { EditPlan, PlanEditor } from "./plan-editor.tsx";
 import { renamed, START } from "./plan-text.ts";
+import { valuesFrom } from "./start-values.ts";
 import { StartPlan } from "./start-plan.tsx";
 import { GiveFile } from "../give-file.tsx";
 
@@ -77,7 +78,7 @@ function Found({ plan }: { plan: Plan }): JSX.Element {
           <Section title="Text" label="text"><FileText path={`/plans/${encodeURIComponent(plan.name)}/text`} label={`Plan ${plan.name}`} /></Section>
           {may("engineer") && !plan.built_in ? <div class="row"><button type="button" onClick={() => void remove()}>Remove the plan</button></div> : null}
         </div>
-        {may("operator") ? <div><Section title="Start it" label="start"><StartPlan plan={plan.name} /></Section></div> : null}
+        {may("operator") ? <div><Section title="Start it" label="start"><StartPlan plan={plan.name} from={valuesFrom(query)} /></Section></div> : null}
       </div>
     </>
   );

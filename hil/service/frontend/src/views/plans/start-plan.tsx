@@ -9,13 +9,19 @@ import { attempt, useData } from "../../data.ts";
 import { go } from "../../router.ts";
 import { ForecastShown, useForecast } from "./forecast.tsx";
 
+// Of an earlier run: its bench, and values of its variables as texts.
+export interface StartedFrom {
+  bench: string;
+  values: Record<string, string>;
+}
+
 // Either the bench is given, or the plan; the other is chosen.
-export function StartPlan({ bench, plan }: { bench?: string; plan?: string }): JSX.Element {
+export function StartPlan({ bench, plan, from }: { bench?: string; plan?: string; from?: StartedFrom }): JSX.Element {
   const plans = useData<Plan[]>("/plans").data ?? [];
   const benches = useData<Bench[]>(bench ? null : "/benches").data ?? [];
   const [chosenPlan, setPlan] = useState(plan ?? "");
-  const [chosenBench, setBench] = useState(bench ?? "");
-  const [texts, setTexts] = useState<Record<string, string>>({});
+  const [chosenBench, setBench] = useState(bench ?? from?.bench ?? "");
+  const [texts, setTexts] = useState<Record<string, string>>(from?.values ?? {});
   const form = useRef<HTMLFormElement>(null);
   const found = plans.find((one) => one.name === (chosenPlan || plans[0]?.name));
   const where = chosenBench || benches[0]?.name || "";

@@ -16,6 +16,7 @@ import { benchInSight } from "../../shell/stop.tsx";
 import { useStore } from "../../store.ts";
 import { Badge, Facts, Heading, Loaded, Moment, Section, verdictOf } from "../../ui/parts.tsx";
 import { Banner, LostNotice } from "../bench-banner.tsx";
+import { againWith } from "../plans/start-values.ts";
 import { Criteria } from "../criteria.tsx";
 import { Notes } from "./notes.tsx";
 import { Downloads, Evidence, Happenings } from "./run-parts.tsx";
@@ -88,6 +89,7 @@ function RunActions({ run }: { run: Run }): JSX.Element | null {
   return (
     <div class="row level">
       {may("operator") && OVER.includes(run.state) ? <button type="button" onClick={() => void again()}>Again</button> : null}
+      {may("operator") && OVER.includes(run.state) ? <a href={againWith(run)}>Again with other values</a> : null}
       {may("operator") && waits ? <button type="button" onClick={() => void attempt(() => post(`/runs/${run.id}/abort`))}>Cancel</button> : null}
       {run.state === "waiting_approval" && may("engineer") ? <button type="button" class="main" onClick={() => void attempt(() => post(`/runs/${run.id}/approve`))}>Approve</button> : null}
       {recorded && may("engineer") ? <a href={`${to.list("diagnoses")}?runs=${run.id}`}>Diagnose</a> : null}
