@@ -6,53 +6,67 @@ import json
 import shutil
 import sys
 import urllib.request
-from collections import Counter
+from collections import defaultdict
 from pathlib import Path
+from typing import Any
 
-from playwright.sync_api import Browser, expect, sync_playwright
+from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 HERE = Path(__file__).parent
+_SETTLED = "networkidle"  # what is drawn was asked for before
 
 
 def main(url: str) -> None:
-    """Queue an acceptance run on the first bench and photograph its second segment."""
-    with urllib.request.urlopen(f"{url}/api/v1/benches") as answer:
-        bench = json.load(answer)[0]["name"]
+    """Queue an acceptance run on the first bench and photograph its second segment, then the studios."""
+    bench = _get(url, "/benches")[0]["name"]
     body = json.dumps({"plan": "acceptance", "bench": bench}).encode()
     headers = {"content-type": "application/json"}
     urllib.request.urlopen(urllib.request.Request(f"{url}/api/v1/runs", body, headers)).close()
     with sync_playwright() as started:
         browser = started.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
-        page = browser.new_page(viewport={"width": 1280, "height": 900})
-        page.goto(f"{url}/#{bench}")
-        expect(page.locator("#forecast")).to_contain_text("bench time", timeout=120_000)
-        expect(page.locator("#why")).to_contain_text("phase_0kmh", timeout=600_000)
-        page.wait_for_timeout(15_000)
+        page = browser.new_page(viewport={"width": 1280, "height": 1100})
+        page.goto(f"{url}/benches/{bench}")
+        banner = page.get_by_role("region", name=f"State of {bench}")
+        expect(banner).to_contain_text("phase_0kmh", timeout=600_000)
+        # the first criteria are decided when its segment is over
+        expect(page.locator("tbody .verdict").first).to_be_visible(timeout=600_000)
         page.screenshot(path=HERE / "page.png")
-        photograph_parts(browser, url)
+        _photograph_studio(browser, url)
+        _photograph_comparison(browser, url)
         browser.close()
 
 
-def photograph_parts(browser: Browser, url: str) -> None:
-    """The design of a controller, and two runs laid over each other if a bench has two of a plan."""
-    page = browser.new_page(viewport={"width": 1280, "height": 1800})
-    with urllib.request.urlopen(f"{url}/api/v1/runs?state=ended") as answer:
-        ended = Counter((run["bench"], run["plan"]) for run in json.load(answer))
-    bench = next((bench for (bench, _), runs in ended.items() if runs > 1), "")
-    page.goto(f"{url}/#{bench}")
-    page.locator("#design > summary").click()
-    page.locator("#design-model").select_option("three_inertia")
-    expect(page.locator("#design-figures")).to_contain_text("1.434", timeout=120_000)
-    page.wait_for_timeout(1000)
-    page.locator("#design").screenshot(path=HERE / "design.png")
-    page.locator("#design > summary").click()
-    if not bench:
-        print("comparison.png stays: no bench has two runs of a plan that are over")
+def _photograph_studio(browser: Browser, url: str) -> None:
+    page = browser.new_page(viewport={"width": 1280, "height": 1250})
+    page.goto(f"{url}/design?model=three_inertia&d=phase;gain")
+    expect(page.locator("thead")).to_contain_text("B notch")
+    expect(page.locator("tbody .verdict")).to_have_count(2, timeout=120_000)
+    _photograph(page, "design.png")
+
+
+def _photograph_comparison(browser: Browser, url: str) -> None:
+    """Two runs laid over each other if there are two of a plan."""
+    plans: dict[str, list[int]] = defaultdict(list)
+    for run in _get(url, "/runs?state=ended"):
+        plans[run["plan"]].append(run["id"])
+    pair = next((runs[:2] for runs in plans.values() if len(runs) > 1), None)
+    if pair is None:
+        print("comparison.png stays: there are no two runs of a plan that are over")
         return
-    page.locator("#compare > summary").click()
-    expect(page.locator("#compare-found")).to_be_visible(timeout=120_000)
-    page.wait_for_timeout(2000)
-    page.locator("#compare").screenshot(path=HERE / "comparison.png")
+    page = browser.new_page(viewport={"width": 1280, "height": 1100})
+    page.goto(f"{url}/compare?runs={pair[1]},{pair[0]}")
+    expect(page.get_by_role("region", name="Criteria", exact=True)).to_be_visible(timeout=120_000)
+    _photograph(page, "comparison.png")
+
+
+def _photograph(page: Page, name: str) -> None:
+    page.wait_for_load_state(_SETTLED)
+    page.screenshot(path=HERE / name)
+
+
+def _get(url: str, path: str) -> Any:
+    with urllib.request.urlopen(f"{url}/api/v1{path}") as answer:
+        return json.load(answer)
 
 
 if __name__ == "__main__":

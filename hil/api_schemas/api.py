@@ -182,6 +182,9 @@ class ForecastWanted(_Data):
     plan: PlanName
     bench: BenchName
     values: dict[str, Number] = Field({}, max_length=100)
+    text: str | None = Field(
+        None, max_length=200_000, description="YAML in place of that of the plan, as it is written; engineers"
+    )
 
 
 class PredictedPeak(_Data):
@@ -242,6 +245,15 @@ class TrendPoint(_Data):
     verdict: str
 
 
+class TrendSignal(_Data):
+    """A rule of control charts that values of a trend broke."""
+
+    rule: str = Field(description="as Nelson (1984) numbers them: `nelson_1`, …")
+    text: str
+    runs: list[RunId] = Field(description="the runs whose values broke it")
+    present: bool = Field(description="true: the newest value is among them")
+
+
 class TrendData(_Data):
     """Trend of a criterion over runs, oldest first; the limits are those of the newest run."""
 
@@ -258,6 +270,7 @@ class TrendData(_Data):
     count: int = Field(0, description="number of values")
     cpk_lower: float | None = Field(None, description="lower end of Cpk's 95 % interval")
     cpk_upper: float | None = Field(None, description="upper end of Cpk's 95 % interval")
+    signals: list[TrendSignal] = Field([], description="of 5 values or more")
 
 
 class Me(_Data):

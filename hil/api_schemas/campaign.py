@@ -17,6 +17,8 @@ CAMPAIGN_OVER: tuple[CampaignState, ...] = ("ended", "failed", "cancelled")
 SentName = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}\.(yaml|yml|toml)$")]
 #: The table of a campaign that is over, as one file.
 TABLE = "simulations.parquet"
+#: What it came to, in numbers.
+SUMMARY = "campaign.json"
 
 
 class _Data(BaseModel):
@@ -76,3 +78,57 @@ class CampaignData(Record):
     reason: str = Field("", description="reason of a failure")
     digest: str = Field(description="hash of the request; equal for equal content")
     files: list[str] = Field([], description="names of its files, when it is finished")
+
+
+class Histogram(_Data):
+    """How often a criterion had a value: `counts` in equal classes from `start`."""
+
+    start: float
+    width: float
+    counts: list[int]
+
+
+class CriterionFindings(_Data):
+    """One criterion over the simulations of one controller."""
+
+    id: str
+    unit: str
+    upper: float | None
+    lower: float | None
+    below: str = Field(description="segment whose value is the limit; '' if none")
+    share: float | None = Field(description="of executed simulations that passed; null without a limit")
+    median: float | None
+    least: float | None
+    largest: float | None
+    histogram: Histogram | None = Field(description="null without values")
+    rank_correlations: dict[str, float | None] = Field(
+        description="Spearman's rank correlation with each input; null where there is none"
+    )
+
+
+class WorstSimulation(_Data):
+    """A simulation with little margin, and what it had for inputs."""
+
+    simulation: int
+    draw: int
+    margin: float
+    binding: str = Field(description="the criterion with this margin")
+    verdict: str
+    inputs: dict[str, float]
+
+
+class ControllerFindings(_Data):
+    """What the simulations of one controller came to."""
+
+    controller: str = Field(description="name of its file; '' for the plan's own")
+    errors: int = Field(description="simulations that failed")
+    criteria: list[CriterionFindings]
+    worst: list[WorstSimulation]
+
+
+class CampaignFindings(_Data):
+    """What a finished campaign came to: distributions, what decides, worst cases."""
+
+    inputs: dict[str, str] = Field(description="units by name of what differs between simulations")
+    controllers: list[ControllerFindings]
+    errors: dict[str, int] = Field(description="what went wrong, and how often")

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from hil.api_schemas.api import BenchName, Number, PlanName, RunData, RunState, RunVerdict, _Data
+from hil.api_schemas.notes import Tag
 
 #: What runs are sorted by; `value` is that of the criterion that is asked for.
 RunOrder = Literal["run", "plan", "bench", "dut", "verdict", "ended", "value"]
@@ -26,6 +27,7 @@ class RunsWanted(_Data):
     state: list[RunState] = Field([], max_length=6)
     verdict: list[RunVerdict] = Field([], max_length=4)
     requested_by: list[_Words] = Field([], max_length=50)
+    tag: list[Tag] = Field([], max_length=20, description="one of these tags, that people have added")
     since: datetime.datetime | None = Field(
         None, description="ended, or queued if it has not ended, at or after"
     )
@@ -49,6 +51,7 @@ class FoundRun(_Data):
     upper: float | None = None
     lower: float | None = None
     criterion_verdict: str = ""
+    tags: list[str] = Field([])
 
 
 class FoundRuns(_Data):
@@ -65,4 +68,5 @@ class RunChoices(_Data):
     plans: list[str]
     duts: list[str]
     people: list[str]
+    tags: list[str]
     criteria: list[str] = Field(description="of the newest runs of the plans given, or of all")

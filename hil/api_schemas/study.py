@@ -54,7 +54,11 @@ class FittedOutput(_Data):
 
     channel: str
     gain_db: Numbers
+    gain_lower_db: Numbers = Field(description="95 % interval; null where it has no end")
+    gain_upper_db: Numbers
     phase_deg: Numbers
+    phase_lower_deg: Numbers = Field(description="95 % interval")
+    phase_upper_deg: Numbers
     coherence: Numbers
     fit_gain_db: Numbers
     fit_phase_deg: Numbers

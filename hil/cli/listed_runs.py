@@ -24,6 +24,8 @@ def list_runs(options: List) -> int:
         from hil.cli.remote_runs import list_remote_runs  # costs a list of a folder nothing
 
         return list_remote_runs(options, moment(options.since, "--since"), moment(options.until, "--until"))
+    if options.tag:
+        raise BadInputError("only runs of a service have tags", where="--tag", fix="add --server URL")
     folder = options.folder or _DEFAULT
     wanted = RunsWanted(
         plan=tuple(options.plan or ()),

@@ -38,7 +38,8 @@ def list_remote_runs(options: List, since: datetime.datetime | None, until: date
         print_json(found.model_dump(mode="json"))
         return 0
     page, table = console(), plain_table()
-    for name in ("run", "plan", "bench", "DUT", "state", "verdict", f"ended ({time_zone()})"):
+    columns = ("run", "plan", "bench", "DUT", "state", "verdict", f"ended ({time_zone()})", "tags")
+    for name in columns:
         table.add_column(name)
     if options.criterion:
         table.add_column(escape(options.criterion), justify="right")
@@ -57,6 +58,7 @@ def _wanted(options: List, since: datetime.datetime | None, until: datetime.date
                 "plan": options.plan or [],
                 "bench": options.bench or [],
                 "verdict": options.verdict or [],
+                "tag": options.tag or [],
                 "since": since,
                 "until": until,
                 "criterion": options.criterion,
@@ -77,7 +79,16 @@ def _wanted(options: List, since: datetime.datetime | None, until: datetime.date
 def _cells(one: FoundRun, *, criterion: bool) -> list[str]:
     run = one.run
     ended = local_time(run.ended_at)
-    cells = [str(run.id), run.plan, run.bench, run.dut or _DASH, run.state, run.verdict or _DASH, ended]
+    cells = [
+        str(run.id),
+        run.plan,
+        run.bench,
+        run.dut or _DASH,
+        run.state,
+        run.verdict or _DASH,
+        ended,
+        " ".join(one.tags),
+    ]
     if criterion:
         cells.append(_DASH if one.value is None else f"{one.value:.5g} {one.unit}".strip())
     return [escape(cell) for cell in cells]

@@ -38,7 +38,7 @@ from hil.api_schemas.api import (
     TokenWanted,
     TrendData,
 )
-from hil.api_schemas.campaign import CampaignData, CampaignExample, CampaignWanted
+from hil.api_schemas.campaign import CampaignData, CampaignExample, CampaignFindings, CampaignWanted
 from hil.api_schemas.comparison import ComparisonData, TracesData
 from hil.api_schemas.design import (
     ControllerData,
@@ -48,6 +48,7 @@ from hil.api_schemas.design import (
     ModelData,
     PlanCopyWanted,
 )
+from hil.api_schemas.notes import NoteData, NoteWanted, RunNotes
 from hil.api_schemas.run_list import FoundRuns, RunsWanted
 from hil.api_schemas.study import (
     DiagnosisData,
@@ -164,6 +165,18 @@ class Client(Requests):
     def run(self, run: int) -> RunData:
         """A run."""
         return self._one(RunData, "GET", f"/runs/{run}")
+
+    def notes(self, run: int) -> RunNotes:
+        """Notes and tags that people have added to a run."""
+        return self._one(RunNotes, "GET", f"/runs/{run}/notes")
+
+    def add_note(self, run: int, text: str) -> NoteData:
+        """Add a note to a run."""
+        return self._one(NoteData, "POST", f"/runs/{run}/notes", NoteWanted(text=text))
+
+    def tag(self, run: int, tag: str) -> None:
+        """Have a run found by a tag."""
+        self._done("PUT", f"/runs/{run}/tags/{part(tag)}")
 
     def queue(self, wanted: RunWanted) -> RunData:
         """Queue a run; with a key, a repeated request queues no second."""
@@ -301,6 +314,10 @@ class Client(Requests):
     def campaign(self, campaign: int) -> CampaignData:
         """A campaign, with its progress and the shares that pass so far."""
         return self._one(CampaignData, "GET", f"/campaigns/{campaign}")
+
+    def campaign_findings(self, campaign: int) -> CampaignFindings:
+        """What a campaign that is over came to."""
+        return self._one(CampaignFindings, "GET", f"/campaigns/{campaign}/findings")
 
     def cancel_campaign(self, campaign: int) -> CampaignData:
         """End one; what is under way is awaited and kept, unless this is asked twice."""

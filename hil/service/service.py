@@ -49,6 +49,7 @@ from hil.service.store import (
     LayoutStore,
     LeaseStore,
     LogStore,
+    NoteStore,
     Presence,
     ResultStore,
     RunList,
@@ -104,6 +105,7 @@ class Service:
         self.database = Presence(engine)
         self.runs, self.run_list, self.leases = RunStore(engine), RunList(engine), LeaseStore(engine)
         self.layouts = LayoutStore(engine)
+        self.notes = NoteStore(engine)
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
         given = GivenStore(engine)
         models = Uploads(given, "model", folder / "given/models", ".toml")

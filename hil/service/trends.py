@@ -7,7 +7,8 @@ import math
 import statistics
 from collections.abc import Iterable, Sequence
 
-from hil.api_schemas.api import TrendData, TrendPoint
+from hil.api_schemas.api import TrendData, TrendPoint, TrendSignal
+from hil.service.control_chart import TEXTS, signals
 from test_plans import CHECKS
 
 #: Mean range of two values of a normal distribution, in standard deviations (ISO 7870-2, d2 for n = 2).
@@ -50,7 +51,23 @@ def _trend(criterion: str, points: list[TrendPoint]) -> TrendData:
         count=len(values),
         cpk_lower=None if cpk is None or reach is None else cpk - reach,
         cpk_upper=None if cpk is None or reach is None else cpk + reach,
+        signals=_signals([point for point in points if point.value is not None], mean, deviation),
     )
+
+
+def _signals(points: Sequence[TrendPoint], mean: float | None, deviation: float | None) -> list[TrendSignal]:
+    if mean is None or deviation is None:
+        return []
+    values = [point.value for point in points if point.value is not None]
+    return [
+        TrendSignal(
+            rule=one.rule,
+            text=TEXTS[one.rule],
+            runs=[point.run for point in points[one.first : one.last + 1]],
+            present=one.last == len(points) - 1,
+        )
+        for one in signals(values, mean, deviation)
+    ]
 
 
 def _deviation(values: Sequence[float]) -> float | None:

@@ -36,7 +36,7 @@ class List:
     a folder; the options choose and sort them.
     """
 
-    SEVERAL = ("--plan", "--bench", "--verdict")
+    SEVERAL = ("--plan", "--bench", "--verdict", "--tag")
 
     what: Annotated[
         str,
@@ -56,6 +56,9 @@ class List:
     verdict: Annotated[
         list[str] | None,
         typer.Option(metavar="VERDICT", help="with runs: pass, fail, done or error"),
+    ] = None
+    tag: Annotated[
+        list[str] | None, typer.Option(metavar="TAG", help="with runs of a --server: that has this tag")
     ] = None
     since: Annotated[
         str,

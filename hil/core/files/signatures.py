@@ -21,7 +21,8 @@ from hil.core.files import read_bytes, replacing, sha256_of
 if TYPE_CHECKING:  # slow to import; two commands alone need it
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey, Ed25519PublicKey
 
-_PREFIX, _MANIFEST, _SIGNATURE = "signature-", ".json", ".sig"
+SIGNATURE_SUFFIX = ".sig"
+_PREFIX, _MANIFEST, _SIGNATURE = "signature-", ".json", SIGNATURE_SUFFIX
 _MAKE_ONE = "make one: ssh-keygen -t ed25519 -f NAME"
 
 
@@ -88,6 +89,11 @@ def signatures_in(folder: Path) -> list[Path]:
     """Manifests of a folder's signatures; of one that has lost its manifest, where that should be."""
     found = {path.with_suffix(_MANIFEST) for path in folder.glob(f"{_PREFIX}*") if _is_signature(path)}
     return sorted(found)
+
+
+def is_manifest(name: str) -> bool:
+    """Whether a file of this name is the manifest of a signature."""
+    return name.startswith(_PREFIX) and name.endswith(_MANIFEST)
 
 
 def read_signature(manifest: Path) -> Signature:

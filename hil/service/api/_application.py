@@ -11,19 +11,20 @@ from starlette.types import ASGIApp
 from hil.service.api import (
     _agents,
     _benches,
-    _built_page,
     _campaigns,
     _comparisons,
     _design,
     _health,
     _layouts,
     _live,
+    _notes,
     _page,
     _people,
     _plans,
     _run_list,
     _run_views,
     _runs,
+    _schemas,
     _studies,
     _trends,
 )
@@ -39,7 +40,9 @@ _PARTS = (
     _agents,
     _live,
     _plans,
+    _schemas,
     _runs,
+    _notes,
     _run_views,
     _run_list,
     _comparisons,
@@ -79,6 +82,5 @@ def _bare(service: Service | None) -> FastAPI:
     for part in _PARTS:
         app.include_router(part.router, prefix=PREFIX, dependencies=[Depends(refuse_unknown_query)])
     _page.add_to(app)
-    _built_page.add_to(app)
     answer_problems(app)
     return app

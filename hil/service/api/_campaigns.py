@@ -9,7 +9,14 @@ from fastapi.responses import FileResponse
 from starlette.responses import Response
 
 from hil.api_schemas.api import RunId
-from hil.api_schemas.campaign import CampaignData, CampaignExample, CampaignWanted
+from hil.api_schemas.campaign import (
+    SUMMARY,
+    TABLE,
+    CampaignData,
+    CampaignExample,
+    CampaignFindings,
+    CampaignWanted,
+)
 from hil.service.api._access import Engineer, TheService, Viewer
 from hil.service.api._left_files import left_file
 from hil.service.api._problems import RefusedError, missing, refuse_elsewhere
@@ -79,6 +86,20 @@ async def remove_campaign(campaign: RunId, service: TheService, me: Engineer) ->
         raise RefusedError(409, f"campaign {campaign} is {found.state}", fix="cancel it first")
     text = f"{found.name}: {found.done} of {found.simulations} simulations"
     service.log.add(me.name, me.role, "campaign removed", str(campaign), text)
+
+
+@router.get("/campaigns/{campaign}/findings", name="get_campaign_findings")
+async def get_campaign_findings(campaign: RunId, service: TheService, me: Viewer) -> CampaignFindings:
+    """Distributions of a finished campaign, what its criteria depend on, worst cases."""
+    del me
+    found = _there(service, campaign)
+    if not {SUMMARY, TABLE} <= set(found.files):
+        raise RefusedError(409, f"campaign {campaign} has no result: {found.reason or found.state}")
+    files = [await service.campaigns.file(campaign, name) for name in (SUMMARY, TABLE)]
+    summary, table = (str(path.resolve()) for path in files)
+    return CampaignFindings(
+        **await service.worker_pool.ask("campaign_findings", summary=summary, table=table)
+    )
 
 
 @router.get("/campaigns/{campaign}/files/{name}", name="get_campaign_file", response_class=Response)

@@ -6,11 +6,14 @@ from typing import Annotated
 
 from fastapi import APIRouter, Body, Request, Response
 
-from hil.api_schemas.api import ForecastData, ForecastWanted, PlanData, PlanName
+from hil.api_schemas.api import LADDER, ForecastData, ForecastWanted, PlanData, PlanName
+from hil.api_schemas.plan_check import PlanCheck, PlanCheckWanted
 from hil.api_schemas.upload import KeptApart
+from hil.core.errors import BadInputError
 from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError, missing
+from hil.service.files.plan_checks import mistakes_of
 
 router = APIRouter(tags=["plans"])
 _YAML = "application/yaml"
@@ -74,13 +77,29 @@ async def list_kept_apart(service: TheService, me: Viewer) -> list[KeptApart]:
     return service.kept_apart
 
 
+@router.post("/plan-checks", name="check_plan")
+async def check_plan(
+    wanted: Annotated[PlanCheckWanted, Body()], service: TheService, me: Engineer
+) -> PlanCheck:
+    """Mistakes of a plan by line, as it is written; keeps nothing."""
+    del me
+    try:
+        return PlanCheck(mistakes=[], plan=await service.upload_reader.check(wanted.name, wanted.text))
+    except BadInputError as error:
+        return PlanCheck(mistakes=mistakes_of(error))
+
+
 @router.post("/forecasts", name="forecast")
 async def forecast(
     wanted: Annotated[ForecastWanted, Body()], service: TheService, me: Operator
 ) -> ForecastData:
     """Predicted duration, peaks and criteria; takes seconds, moves nothing."""
-    del me
     bench = known(service, wanted.bench)
+    if wanted.text is not None:
+        if LADDER.index(me.role) < LADDER.index("engineer"):
+            raise RefusedError(403, f"{me.name} is {me.role}; engineer is needed", where="text")
+        written = await service.upload_reader.chosen(wanted.plan, wanted.text, wanted.values)
+        return await service.forecast(written, bench)
     plan = service.plans.chosen(wanted.plan, wanted.values)
     if plan is None:
         raise missing("plan", wanted.plan)

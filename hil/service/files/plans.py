@@ -13,7 +13,7 @@ from hil.core.errors import BadInputError
 from hil.core.files import read_text
 from hil.service.files.uploads import NameTakenError, Uploads
 from hil.service.worker_pool.plan_reading import GivenPlan, data_of, given_plan, read_given
-from test_plans import Choices, Plan, library_plans, load_plan
+from test_plans import Choices, Plan, library_plans, load_plan, plan_from_text
 from test_plans.yaml_document import read_yaml
 
 _MOST_READ = 500
@@ -66,6 +66,16 @@ class Plans:
         """
         path = self._path(name)
         return None if path is None else load_plan(path, Choices(values=values))
+
+    def written(self, name: str, text: str, values: Mapping[str, float]) -> Plan:
+        """A plan that is not given, as if it lay beside those that are, with its variables as chosen.
+
+        Raises:
+            BadInputError: all that is wrong with it, or a value beyond its bounds.
+        """
+        place = self._with_controllers() / f"{name}.yaml"
+        chosen = Choices(values=values).applied(text, read_yaml(text, str(place))) if values else text
+        return plan_from_text(chosen, str(place), place.parent)
 
     def text(self, name: str) -> str | None:
         """The YAML of one."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from hil.api_schemas.api import PlanData
@@ -10,6 +11,7 @@ from hil.core.errors import BadInputError
 from hil.service.files.plans import Plans
 from hil.service.worker_pool import READ_WITHIN_S, READING, TooLongError, WorkerPool
 from hil.service.worker_pool.plan_reading import GivenPlan
+from test_plans import Plan
 
 
 class UploadReader:
@@ -43,6 +45,24 @@ class UploadReader:
         found = await self.read("plan", name, text, folder=folder)
         read = GivenPlan(PlanData.model_validate(found["data"]), tuple(found["files"]))
         return self._plans.give(name, text, by, read=read)
+
+    async def check(self, name: str, text: str) -> PlanData:
+        """What a plan says that is not given yet.
+
+        Raises:
+            BadInputError: all that is wrong with it.
+        """
+        folder = str(self._plans.fresh_folder().resolve())
+        return PlanData.model_validate((await self.read("plan", name, text, folder=folder))["data"])
+
+    async def chosen(self, name: str, text: str, values: Mapping[str, float]) -> Plan:
+        """A plan that is not given yet with its variables as chosen; another process has read it first.
+
+        Raises:
+            BadInputError: all that is wrong with it, or a value beyond its bounds.
+        """
+        await self.check(name, text)
+        return self._plans.written(name, text, values)
 
     def close(self) -> None:
         """End the process that reads."""

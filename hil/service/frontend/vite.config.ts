@@ -2,7 +2,7 @@ import { defineConfig } from "vite";
 
 // Everything comes from the service itself: no inline script or style, no file of another place (its security policy).
 export default defineConfig({
-  base: "/app/",
+  base: "/",
   oxc: { jsx: { runtime: "automatic", importSource: "preact" } },
   build: {
     outDir: "built",

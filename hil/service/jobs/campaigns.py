@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from hil.api_schemas.campaign import (
+    SUMMARY,
     TABLE,
     CampaignData,
     CampaignExample,
@@ -37,7 +38,7 @@ from hil.service.worker_pool import WorkerPool
 _LOOK_S = 1.0
 _FREE_WITHIN_S = 30.0  # processes of a killed one end by themselves
 _LAST_WORDS_S = 5.0
-_GIVEN, _SUMMARY = "given", "campaign.json"
+_GIVEN = "given"
 _INTERRUPTED = 130
 
 logger = logging.getLogger(__name__)
@@ -258,7 +259,7 @@ class Campaigns(Jobs[CampaignData]):
 
     def _passed(self, number: int) -> bool | None:
         with contextlib.suppress(OSError, ValueError):
-            found = json.loads((self.results(number) / _SUMMARY).read_bytes())["passed"]
+            found = json.loads((self.results(number) / SUMMARY).read_bytes())["passed"]
             return found if isinstance(found, bool) else None
         return None
 

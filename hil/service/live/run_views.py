@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import functools
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hil.api_schemas.api import OVER, RunData
-from hil.core.errors import BadInputError, BenchError
+from hil.core.errors import BadInputError, BenchError, HilError
+from hil.core.files.signatures import (
+    SIGNATURE_SUFFIX,
+    BrokenSignatureError,
+    is_manifest,
+    read_signature,
+)
 from hil.core.recording import Overview, read_overview
 from hil.core.result import CriterionResult, RunResult
 from hil.engine import RECORDING
@@ -60,9 +67,24 @@ class RunViews:
             return _NOTHING | {"live": True, "channels": units}
         overview, _ = await self._kept(run)
         found = await asyncio.to_thread(run_view.shown, overview)
-        found |= {"live": False} | _of_result(await self._result(run), found["marks"])
-        own = {line["channel"] for line in found["limits"]}
-        found["limits"] += [line for line in self._bench_limits(run.bench) if line["channel"] not in own]
+        result = await self._result(run)
+        found |= {"live": False} | _of_result(result, found["marks"])
+        if result is None:  # the bench's file as it was is in no result; today's is the best guess
+            found["limits"] = self._bench_limits(run.bench)
+        else:
+            found["evidence"]["signed_by"] = ", ".join(await self._signers(run))
+        return found
+
+    async def _signers(self, run: RunData) -> list[str]:
+        """Who signed the run's folder, as far as a signature is that of its manifest."""
+        names = [name for name in self._service.files_of(run.id) if is_manifest(name)]
+        found = []
+        for name in names:
+            manifest: Path = await self._service.file_of(run.id, name)
+            await self._service.file_of(run.id, manifest.with_suffix(SIGNATURE_SUFFIX).name)
+            with contextlib.suppress(BrokenSignatureError, HilError):
+                signature = await asyncio.to_thread(read_signature, manifest)
+                found += [signature.signed_by] if signature.intact else []
         return found
 
     async def traces(self, run: RunData, *, close: bool, **asked: Any) -> dict[str, Any]:
@@ -158,9 +180,23 @@ def _of_result(result: RunResult | None, marks: list[dict[str, Any]]) -> dict[st
         for one in result.holds
     ]
     fields = {"channel", "below", "above", "response", "reached"}
+    lines = [one.model_dump(include=fields) for one in result.limits if one.of == "value"]
     evidence = {"samples_sha256": result.samples_sha256, "files": result.sha256, "whole": True}
     return {
-        "limits": [one.model_dump(include=fields) for one in result.limits if one.of == "value"],
+        "limits": [*lines, *_of_both_sides(lines)],
         "criteria": [_criterion(one) for one in result.criteria],
         "evidence": evidence,
     }
+
+
+def _of_both_sides(lines: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The limit of the whole shaft torque, of which each side may have half."""
+    sides = {line["channel"]: line for line in lines}
+    left, right = (sides.get(f"shaft_torque_{side}_nm") for side in ("left", "right"))
+    one = left or right
+    if one is None or "shaft_torque_nm" in sides or one["above"] is None or one["below"] is None:
+        return []
+    return [
+        one
+        | {"channel": "shaft_torque_nm", "above": 2 * one["above"], "below": 2 * one["below"], "reached": 0}
+    ]

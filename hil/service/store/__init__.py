@@ -7,6 +7,7 @@ from hil.service.store._books import asked_apart, in_turns
 from hil.service.store._files import FileStore, KeptFile
 from hil.service.store._given import GivenStore, GivenText
 from hil.service.store._layouts import LayoutStore
+from hil.service.store._notes import NoteStore
 from hil.service.store._opening import open_database
 from hil.service.store._people import SESSION_S, TokenStore
 from hil.service.store._presence import DatabaseAwayError, Presence
@@ -31,6 +32,7 @@ __all__ = [
     "LeaseStore",
     "LogStore",
     "NewRun",
+    "NoteStore",
     "Presence",
     "RegisteredBench",
     "ResultKind",

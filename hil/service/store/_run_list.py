@@ -10,7 +10,7 @@ from sqlalchemy.orm import InstrumentedAttribute, load_only, sessionmaker
 from hil.api_schemas.run_list import FoundRun, FoundRuns, RunChoices, RunsWanted
 from hil.service.store._books import asked_apart
 from hil.service.store._runs import RUN_COLUMNS, run_data
-from hil.service.store._tables import CriterionRow, RunRow
+from hil.service.store._tables import CriterionRow, RunRow, TagRow
 
 #: Criteria are offered of so many newest runs: going through those of all runs would take a second.
 _NEWEST = 200
@@ -59,7 +59,10 @@ class RunList:
                 CriterionRow.run.in_(numbers), CriterionRow.id == wanted.criterion
             )
             criteria = {one.run: one for one in session.scalars(chosen)} if wanted.criterion else {}
-            found = [_found(runs[number], criteria.get(number)) for number in numbers]
+            tags: dict[int, list[str]] = {}
+            for row in session.scalars(select(TagRow).where(TagRow.run.in_(numbers)).order_by(TagRow.tag)):
+                tags.setdefault(row.run, []).append(row.tag)
+            found = [_found(runs[one], criteria.get(one), tags.get(one, [])) for one in numbers]
             return FoundRuns(runs=found, total=session.scalar(count.where(*where)) or 0)
 
     def choices(self, plans: list[str]) -> RunChoices:
@@ -79,6 +82,7 @@ class RunList:
                 plans=every(RunRow.plan),
                 duts=every(RunRow.dut),
                 people=every(RunRow.requested_by),
+                tags=every(TagRow.tag),
                 criteria=sorted(session.scalars(criteria.limit(_MOST_CHOICES))),
             )
 
@@ -90,6 +94,8 @@ def _is(wanted: RunsWanted) -> ColumnElement[bool]:
 def _conditions(wanted: RunsWanted) -> list[ColumnElement[bool]]:
     chosen = [(column, getattr(wanted, name)) for name, column in _FILTERS.items()]
     found: list[ColumnElement[bool]] = [column.in_(values) for column, values in chosen if values]
+    if wanted.tag:
+        found.append(RunRow.id.in_(select(TagRow.run).where(TagRow.tag.in_(wanted.tag))))
     if wanted.since is not None:
         found.append(wanted.since <= _MOMENT)
     if wanted.until is not None:
@@ -111,9 +117,9 @@ def _order(wanted: RunsWanted) -> list[UnaryExpression[Any]]:
     return [(column.asc() if wanted.rising else column.desc()).nulls_last(), RunRow.id.desc()]
 
 
-def _found(run: RunRow, criterion: CriterionRow | None) -> FoundRun:
+def _found(run: RunRow, criterion: CriterionRow | None, tags: list[str]) -> FoundRun:
     if criterion is None:
-        return FoundRun(run=run_data(run))
+        return FoundRun(run=run_data(run), tags=tags)
     return FoundRun(
         run=run_data(run),
         value=criterion.value,
@@ -121,4 +127,5 @@ def _found(run: RunRow, criterion: CriterionRow | None) -> FoundRun:
         upper=criterion.upper,
         lower=criterion.lower,
         criterion_verdict=criterion.verdict,
+        tags=tags,
     )

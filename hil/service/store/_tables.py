@@ -217,6 +217,31 @@ class LayoutRow(Base):
     kept_at: Mapped[datetime.datetime] = mapped_column(_MOMENT)
 
 
+class NoteRow(Base):
+    """A note that somebody has added to a run."""
+
+    __tablename__ = "notes"
+    __table_args__ = (Index("notes_by_run", "run", "id"),)
+
+    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
+    run: Mapped[int]
+    at: Mapped[datetime.datetime] = mapped_column(_MOMENT)
+    who: Mapped[str] = mapped_column(String(100))
+    text: Mapped[str] = mapped_column(Text)
+
+
+class TagRow(Base):
+    """A word by which a run is found."""
+
+    __tablename__ = "tags"
+    __table_args__ = (Index("tags_by_tag", "tag", "run"),)
+
+    run: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    tag: Mapped[str] = mapped_column(String(40), primary_key=True)
+    who: Mapped[str] = mapped_column(String(100))
+    at: Mapped[datetime.datetime] = mapped_column(_MOMENT)
+
+
 class AuditRow(Base):
     """Something that somebody did; the database itself refuses to change or remove it."""
 

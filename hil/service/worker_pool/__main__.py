@@ -29,10 +29,12 @@ TASKS = {
     "fitted": "_designing:fitted",
     "campaign": "_campaigning:given",
     "campaign_so_far": "_campaigning:so_far",
+    "campaign_findings": "_campaign_findings:findings",
     "campaign_table": "_campaigning:table",
     "read_plan": "plan_reading:plan",
     "read_model": "plan_reading:model",
     "read_controller": "plan_reading:controller",
+    "schema": "_schemas:schema",
     "campaign_examples": "_campaigning:examples",
 }
 

@@ -155,9 +155,25 @@ def _output(frf: FrequencyResponse, model: Model, name: str) -> dict[str, Any]:
         "channel": name,
         "gain_db": numbers(20 * np.log10(np.abs(measured))),
         "phase_deg": numbers(np.degrees(np.unwrap(np.angle(measured)))),
+        **_reach(measured, frf.deviation_of(name)),
         "coherence": numbers(frf.coherence[frf.outputs.index(name)]),
         "fit_gain_db": numbers(20 * np.log10(np.abs(fit))),
         "fit_phase_deg": numbers(np.degrees(np.unwrap(np.angle(fit)))),
+    }
+
+
+def _reach(measured: npt.NDArray[np.complex128], deviation: npt.NDArray[np.float64]) -> dict[str, Any]:
+    """95 % intervals of gain and phase, of circular complex errors whose radial part has half their power
+    (Pintelon and Schoukens, System Identification, 2nd ed., section 2.4)."""
+    gain, phase = np.abs(measured), np.degrees(np.unwrap(np.angle(measured)))
+    radial = _IN_95 * deviation / np.sqrt(2)
+    sideways = np.degrees(np.arcsin(np.minimum(1.0, radial / gain)))
+    lower = np.where(radial < gain, gain - radial, np.nan)
+    return {
+        "gain_lower_db": numbers(20 * np.log10(lower)),
+        "gain_upper_db": numbers(20 * np.log10(gain + radial)),
+        "phase_lower_deg": numbers(phase - sideways),
+        "phase_upper_deg": numbers(phase + sideways),
     }
 
 

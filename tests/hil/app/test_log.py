@@ -69,7 +69,7 @@ def test_a_mistake_of_the_program_leaves_its_traceback_in_a_log_and_says_where(
     named, tmp_path, capsys, monkeypatch
 ):
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    monkeypatch.setitem(schema._SCHEMAS, "plan", lambda: 1 / 0)
+    monkeypatch.setitem(schema.SCHEMAS, "plan", lambda: 1 / 0)
     assert guarded(["schema", *(["--log", str(tmp_path / "hil-own.log")] if named else [])]) == 3
     told = capsys.readouterr().err
     [log] = tmp_path.iterdir()

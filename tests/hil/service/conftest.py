@@ -68,12 +68,16 @@ def page(there: Served) -> Iterator[playwright.Page]:
         page = browser.new_page(viewport={"width": 1280, "height": 900})
         troubles: list[str] = []
         page.on("pageerror", lambda error: troubles.append(str(error)))
-        page.on("console", lambda line: troubles.append(line.text) if line.type == "error" else None)
+        page.on("console", lambda line: troubles.append(_trouble(line)) if line.type == "error" else None)
         page.on("request", lambda request: _refuse_elsewhere(request.url, there.url, troubles))
         page.set_default_timeout(60_000)
         yield page
         browser.close()
     assert [one for one in troubles if "401 (Unauthorized)" not in one] == []  # asking who one is
+
+
+def _trouble(line: playwright.ConsoleMessage) -> str:
+    return f"{line.text} {line.location['url']}"
 
 
 def _refuse_elsewhere(url: str, home: str, troubles: list[str]) -> None:

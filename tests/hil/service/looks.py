@@ -29,17 +29,17 @@ def refuse_hard_to_use(page: playwright.Page) -> None:
             assert not shown, f"{shown} at {width} px, {scheme}"
 
 
-def roles_drawn(page: playwright.Page, canvas: str, roles: tuple[str, ...]) -> set[str]:
-    """Which of the house's colours a canvas has."""
-    page.wait_for_timeout(100)
-    return set(page.evaluate(_ROLES_DRAWN, [canvas, list(roles)]))
+def expect_drawn(plot: playwright.Locator, *roles: str) -> None:
+    """Waits until a plot's canvas has all of these of the house's colours."""
+    playwright.expect(plot.locator("canvas")).to_be_visible()
+    plot.page.wait_for_function(_DRAWN, arg=[plot.locator("canvas").element_handle(), list(roles)])
 
 
-_ROLES_DRAWN = """([id, roles]) => {
-  const canvas = document.getElementById(id), style = getComputedStyle(document.documentElement);
+_DRAWN = """([canvas, roles]) => {
+  const style = getComputedStyle(document.documentElement);
   const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
   const words = new Set(new Uint32Array(data.buffer));
-  return roles.filter((role) => {
+  return roles.every((role) => {
     const hex = style.getPropertyValue(`--series-${role}`).trim();
     const [r, g, b] = [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
     return words.has((0xff000000 | (b << 16) | (g << 8) | r) >>> 0);

@@ -38,6 +38,11 @@ LEAST = {
     ("PUT", "/agents/{agent}/forecasts/{order}"): "agent",
     ("GET", "/run-list"): "viewer",
     ("GET", "/run-list/choices"): "viewer",
+    ("GET", "/runs/{run}/notes"): "viewer",
+    ("POST", "/runs/{run}/notes"): "operator",
+    ("DELETE", "/runs/{run}/notes/{note}"): "operator",
+    ("PUT", "/runs/{run}/tags/{tag}"): "operator",
+    ("DELETE", "/runs/{run}/tags/{tag}"): "operator",
     ("GET", "/runs/{run}/view"): "viewer",
     ("GET", "/runs/{run}/traces"): "viewer",
     ("GET", "/runs/{run}/spectrum"): "viewer",
@@ -50,6 +55,8 @@ LEAST = {
     ("PUT", "/plans/{plan}"): "engineer",
     ("DELETE", "/plans/{plan}"): "engineer",
     ("GET", "/kept-apart"): "viewer",
+    ("GET", "/schemas/{kind}"): "viewer",
+    ("POST", "/plan-checks"): "engineer",
     ("POST", "/forecasts"): "operator",
     ("GET", "/runs"): "viewer",
     ("POST", "/runs"): "operator",
@@ -88,6 +95,7 @@ LEAST = {
     ("GET", "/campaigns"): "viewer",
     ("POST", "/campaigns"): "engineer",
     ("GET", "/campaigns/{campaign}"): "viewer",
+    ("GET", "/campaigns/{campaign}/findings"): "viewer",
     ("POST", "/campaigns/{campaign}/cancel"): "engineer",
     ("DELETE", "/campaigns/{campaign}"): "engineer",
     ("POST", "/campaigns/{campaign}/resume"): "engineer",
@@ -103,7 +111,7 @@ LEAST = {
 #: Names of things that there are not: who may ask hears 404 or 422, nothing is changed.
 _NONE = {"bench": "none", "plan": "none", "run": "2000000000", "token": "2000000000", "name": "x"}
 _NONE |= {"agent": "0" * 32, "order": "0" * 16, "model": "none", "controller": "none"}
-_NONE |= {"study": "2000000000", "campaign": "2000000000"}
+_NONE |= {"study": "2000000000", "campaign": "2000000000", "note": "2000000000", "tag": "x", "kind": "plan"}
 
 
 @pytest.fixture(scope="module")

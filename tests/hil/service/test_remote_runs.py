@@ -29,6 +29,18 @@ def test_runs_of_a_service_are_chosen_and_sorted_by_it(
         assert " N m" in shown
         assert guarded([*command, "--verdict", "error", "--since", "2020-01-01"]) == 0
         assert "0 of 0 runs" in capsys.readouterr().out
+        service.ask("PUT", "/api/v1/runs/1/tags/axle-7")
+        assert guarded([*command, "--tag", "cold", "--tag", "axle-7"]) == 0
+        shown = capsys.readouterr().out
+        assert "axle-7" in shown
+        assert "1 of 1 runs" in shown
+        assert guarded([*command, "--tag", "cold"]) == 0
+        assert "0 of 0 runs" in capsys.readouterr().out
+
+
+def test_runs_of_a_folder_have_no_tags(capsys: pytest.CaptureFixture[str]) -> None:
+    assert guarded(["list", "runs", "--tag", "axle-7"]) == 2
+    assert "only runs of a service have tags" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -37,6 +49,7 @@ def test_runs_of_a_service_are_chosen_and_sorted_by_it(
         (["runs", "out"], "DIR does not go with --server"),
         (["runs", "--sort", "margin"], "a service does not sort by 'margin'"),
         (["runs", "--verdict", "fine"], "--verdict"),
+        (["runs", "--tag", "two words"], "--tag"),
         (["runs"], "127.0.0.1:9"),
         (["plans"], "--server goes with `hil list runs`"),
     ],

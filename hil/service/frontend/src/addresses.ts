@@ -1,18 +1,16 @@
 // Every view has an address: what it says, and how it is written.
 
-export const BASE = "/app";
-
 export type Place =
-  | { view: "benches" | "runs" | "compare" | "plans" | "models" | "controllers" | "diagnoses" | "campaigns" | "audit" | "settings" }
+  | { view: "benches" | "runs" | "compare" | "plans" | "models" | "controllers" | "design" | "identifications" | "diagnoses" | "campaigns" | "audit" | "settings" }
   | { view: "bench" | "panel"; bench: string }
   | { view: "run"; run: number }
   | { view: "plan" | "model" | "controller"; name: string }
-  | { view: "diagnosis" | "campaign"; id: number }
+  | { view: "identification" | "diagnosis" | "campaign"; id: number }
   | { view: "missing"; path: string };
 
-const LISTS = ["benches", "runs", "compare", "plans", "models", "controllers", "diagnoses", "campaigns", "audit", "settings"] as const;
+const LISTS = ["benches", "runs", "compare", "plans", "models", "controllers", "design", "identifications", "diagnoses", "campaigns", "audit", "settings"] as const;
 const NAMED = { plans: "plan", models: "model", controllers: "controller" } as const;
-const NUMBERED = { diagnoses: "diagnosis", campaigns: "campaign" } as const;
+const NUMBERED = { identifications: "identification", diagnoses: "diagnosis", campaigns: "campaign" } as const;
 
 export function placeOf(path: string): Place {
   const missing: Place = { view: "missing", path };
@@ -32,9 +30,8 @@ export function placeOf(path: string): Place {
 }
 
 function partsOf(path: string): string[] {
-  const below = path.startsWith(BASE) ? path.slice(BASE.length) : path;
   try {
-    return below.split("/").filter(Boolean).map(decodeURIComponent);
+    return path.split("/").filter(Boolean).map(decodeURIComponent);
   } catch { // not an encoding
     return ["?"];
   }
@@ -44,24 +41,35 @@ function numberOf(text: string): number | null {
   return /^[1-9][0-9]{0,9}$/.test(text) ? Number(text) : null;
 }
 
+// The former page had one address, with a bench behind it: /#sim.
+export function placeOfFormer(path: string, hash: string): string | null {
+  if (path !== "/" || hash.length < 2) return null;
+  try {
+    return to.bench(decodeURIComponent(hash.slice(1)));
+  } catch { // not an encoding
+    return null;
+  }
+}
+
 const name = encodeURIComponent;
 
 export const to = {
-  list: (view: (typeof LISTS)[number]): string => `${BASE}/${view}`,
-  bench: (bench: string): string => `${BASE}/benches/${name(bench)}`,
-  panel: (bench: string): string => `${BASE}/benches/${name(bench)}/panel`,
-  run: (run: number): string => `${BASE}/runs/${run}`,
-  plan: (plan: string): string => `${BASE}/plans/${name(plan)}`,
-  model: (model: string): string => `${BASE}/models/${name(model)}`,
-  controller: (controller: string): string => `${BASE}/controllers/${name(controller)}`,
-  diagnosis: (id: number): string => `${BASE}/diagnoses/${id}`,
-  campaign: (id: number): string => `${BASE}/campaigns/${id}`,
-  compare: (first: number, other: number): string => `${BASE}/compare?runs=${first},${other}`,
+  list: (view: (typeof LISTS)[number]): string => `/${view}`,
+  bench: (bench: string): string => `/benches/${name(bench)}`,
+  panel: (bench: string): string => `/benches/${name(bench)}/panel`,
+  run: (run: number): string => `/runs/${run}`,
+  plan: (plan: string): string => `/plans/${name(plan)}`,
+  model: (model: string): string => `/models/${name(model)}`,
+  controller: (controller: string): string => `/controllers/${name(controller)}`,
+  identification: (id: number): string => `/identifications/${id}`,
+  diagnosis: (id: number): string => `/diagnoses/${id}`,
+  campaign: (id: number): string => `/campaigns/${id}`,
+  compare: (first: number, other: number): string => `/compare?runs=${first},${other}`,
 };
 
 const TITLES: Record<(typeof LISTS)[number], string> = {
   benches: "Benches", runs: "Runs", compare: "Compare runs", plans: "Plans", models: "Models", controllers: "Controllers",
-  diagnoses: "Diagnoses", campaigns: "Campaigns", audit: "Audit log", settings: "Settings",
+  design: "Design a controller", identifications: "Identifications", diagnoses: "Diagnoses", campaigns: "Campaigns", audit: "Audit log", settings: "Settings",
 };
 
 export function titleOf(place: Place): string {
@@ -72,6 +80,7 @@ export function titleOf(place: Place): string {
     case "plan": return `Plan ${place.name}`;
     case "model": return `Model ${place.name}`;
     case "controller": return `Controller ${place.name}`;
+    case "identification": return `Identification ${place.id}`;
     case "diagnosis": return `Diagnosis ${place.id}`;
     case "campaign": return `Campaign ${place.id}`;
     case "missing": return "No such page";

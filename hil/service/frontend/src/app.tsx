@@ -52,8 +52,9 @@ export function App(): JSX.Element {
 }
 
 function Menu({ place }: { place: Place }): JSX.Element {
-  const of = { bench: "benches", panel: "benches", run: "runs", plan: "plans", model: "models", controller: "controllers", diagnosis: "diagnoses", campaign: "campaigns" } as Record<string, string>;
+  const of = { bench: "benches", panel: "benches", run: "runs", plan: "plans", model: "models", controller: "controllers", identification: "identifications", diagnosis: "diagnoses", campaign: "campaigns" } as Record<string, string>;
   const list = of[place.view] ?? place.view;
+  useEffect(() => document.querySelector(".menu [aria-current]")?.scrollIntoView({ block: "nearest", inline: "nearest" }), [list]); // of a narrow screen
   return (
     <nav class="menu" aria-label="Pages">
       {MENU.map(([view, name]) => <a key={view} href={to.list(view)} aria-current={view === list ? "page" : undefined}>{name}</a>)}

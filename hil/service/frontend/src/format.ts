@@ -23,6 +23,13 @@ export function figure(value: number | null | undefined, unit = ""): string {
 export const fixed = (value: number, digits: number): string =>
   formatOf({ minimumFractionDigits: digits, maximumFractionDigits: digits }).format(value);
 
+// As many as tell neighbouring ticks apart: 2.5 has one, 0.25 two.
+export function digitsOf(step: number): number {
+  let digits = 0;
+  while (digits < 6 && Math.abs(step - Number(step.toFixed(digits))) > 1e-6 * step) digits += 1;
+  return digits;
+}
+
 export const percent = (share: number, digits = 0): string =>
   formatOf({ style: "percent", minimumFractionDigits: digits, maximumFractionDigits: digits }).format(share);
 

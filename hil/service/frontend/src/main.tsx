@@ -6,6 +6,7 @@ import { beginTheme } from "./theme.ts";
 import "uplot/dist/uPlot.min.css";
 import "./style/page.css";
 import "./style/plots.css";
+import "./style/studios.css";
 
 beginTheme();
 followLinks();

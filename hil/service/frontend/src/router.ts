@@ -1,8 +1,12 @@
 // The address that is shown: links change it without loading the page, back and forward work as anywhere.
 
 import { useEffect, useMemo } from "preact/hooks";
-import { BASE, placeOf, type Place } from "./addresses.ts";
+import { placeOf, placeOfFormer, type Place } from "./addresses.ts";
+import { API } from "./api/client.ts";
 import { Store, useStore } from "./store.ts";
+
+const former = placeOfFormer(location.pathname, location.hash);
+if (former) history.replaceState(null, "", former);
 
 const here = (): string => location.pathname + location.search;
 const address = new Store(here());
@@ -47,7 +51,7 @@ export function followLinks(): void {
     const link = (event.target as Element).closest?.("a");
     if (!link || link.target || link.hasAttribute("download")) return;
     const url = new URL(link.href);
-    if (url.origin !== location.origin || (url.pathname !== BASE && !url.pathname.startsWith(`${BASE}/`))) return;
+    if (url.origin !== location.origin || url.pathname.startsWith(API)) return;
     event.preventDefault();
     go(url.pathname + url.search);
   });

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import test from "node:test";
-import { placeOf, titleOf, to } from "../../../../hil/service/frontend/src/addresses.ts";
+import { placeOf, placeOfFormer, titleOf, to } from "../../../../hil/service/frontend/src/addresses.ts";
 
 test("what an address was written from is read from it", () => {
   assert.deepEqual(placeOf(to.bench("rear axle/2")), { view: "bench", bench: "rear axle/2" });
@@ -10,20 +10,26 @@ test("what an address was written from is read from it", () => {
   assert.deepEqual(placeOf(to.run(17)), { view: "run", run: 17 });
   assert.deepEqual(placeOf(to.plan("driveability")), { view: "plan", name: "driveability" });
   assert.deepEqual(placeOf(to.diagnosis(3)), { view: "diagnosis", id: 3 });
+  assert.deepEqual(placeOf(to.identification(3)), { view: "identification", id: 3 });
   assert.deepEqual(placeOf(to.campaign(4)), { view: "campaign", id: 4 });
-  for (const view of ["benches", "runs", "compare", "plans", "models", "controllers", "diagnoses", "campaigns", "audit", "settings"] as const) assert.deepEqual(placeOf(to.list(view)), { view });
+  for (const view of ["benches", "runs", "compare", "plans", "models", "controllers", "design", "identifications", "diagnoses", "campaigns", "audit", "settings"] as const) assert.deepEqual(placeOf(to.list(view)), { view });
 });
 
 test("the address without a view is that of the benches", () => {
-  assert.deepEqual(placeOf("/app"), { view: "benches" });
-  assert.deepEqual(placeOf("/app/"), { view: "benches" });
+  assert.deepEqual(placeOf("/"), { view: "benches" });
+  assert.deepEqual(placeOf(""), { view: "benches" });
 });
 
 test("an address of nothing is missing, whatever stands in it", () => {
-  for (const path of ["/app/nothing", "/app/runs/0", "/app/runs/x", "/app/runs/1/2", "/app/benches/sim/other", "/app/settings/a", "/app/plans/%E0%A4%A"]) assert.equal(placeOf(path).view, "missing", path);
+  for (const path of ["/nothing", "/runs/0", "/runs/x", "/runs/1/2", "/benches/sim/other", "/settings/a", "/plans/%E0%A4%A"]) assert.equal(placeOf(path).view, "missing", path);
 });
 
 test("titles tell views apart", () => {
-  assert.equal(titleOf(placeOf("/app/runs/17")), "Run 17");
-  assert.equal(titleOf(placeOf("/app/benches/sim/panel")), "Operator panel of sim");
+  assert.equal(titleOf(placeOf("/runs/17")), "Run 17");
+  assert.equal(titleOf(placeOf("/benches/sim/panel")), "Operator panel of sim");
+});
+
+test("an address of the former page leads to its bench", () => {
+  assert.equal(placeOfFormer("/", "#rear%20axle"), "/benches/rear%20axle");
+  for (const [path, hash] of [["/", ""], ["/", "#"], ["/runs", "#sim"], ["/", "#%E0%A4%A"]] as const) assert.equal(placeOfFormer(path, hash), null, path + hash);
 });

@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { channelsOf, layoutOf, layoutText, usualLayout, withChannel, type PlotSpec } from "../../../../hil/service/frontend/src/plot/layout.ts";
+import { digitsOf } from "../../../../hil/service/frontend/src/format.ts";
 import { numbersFrom, numbersText, panned, rangeFrom, rangeOf, rangeText, zoomed } from "../../../../hil/service/frontend/src/plot/range.ts";
 import { nearest, Recent, tracesOf, valueAt } from "../../../../hil/service/frontend/src/plot/traces.ts";
 
@@ -75,4 +76,8 @@ test("a value is that of the bucket at the cursor, and none where nothing was me
   assert.equal(valueAt(traces, "a", 9), null);
   assert.equal(nearest([0, 1, 2], 1.4), 1);
   assert.equal(nearest([], 1), -1);
+});
+
+test("numbers of an axis have as many digits as tell its ticks apart", () => {
+  assert.deepEqual([1, 2.5, 0.25, 0.1, 0.05, 20, 1e-9].map(digitsOf), [0, 1, 2, 1, 2, 0, 6]);
 });

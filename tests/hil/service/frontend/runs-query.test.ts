@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import test from "node:test";
-import { queryFrom, sorted, toAddress, toService } from "../../../../hil/service/frontend/src/views/runs-query.ts";
+import { queryFrom, sorted, toAddress, toService } from "../../../../hil/service/frontend/src/views/runs/runs-query.ts";
 
 const of = (text: string) => queryFrom(new URLSearchParams(text));
 

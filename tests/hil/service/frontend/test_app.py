@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,24 +10,18 @@ import pytest
 from playwright import sync_api as playwright
 
 from hil.service.serving import make_token
-from tests.hil.service.looks import refuse_hard_to_use
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
+from tests.hil.service.looks import expect_drawn, refuse_hard_to_use
 from tests.hil.service.served import ASKING, SHORT, Served, environment_of, served
 
-ROOT = Path(__file__).parents[4]
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(shutil.which("chromium") is None, reason="there is no chromium"),
-    pytest.mark.skipif(
-        not (ROOT / "hil/service/frontend/built/index.html").is_file(),
-        reason="the page is not built: make page",
-    ),
-]
+pytestmark = IN_A_BROWSER
 #: Time enough before its question for all that was measured to be written.
 _LATER = ASKING.replace("name: asking", "name: asking\ntitle: A plan that asks").replace(
     "  - operator_prompt", "  - wait: {duration_s: 5}\n  - operator_prompt"
 )
-expect = playwright.expect
-expect.set_options(timeout=60_000)
+
+_PEAKS = re.compile(r"shaft torque of runs 1, 2 from the step; largest \d+, \d+ N m")
+_ASKED = re.compile(r"driving torque ref of runs 1, 2 .* largest 100, 150 N m")
 
 
 @pytest.fixture(scope="module")
@@ -43,35 +36,64 @@ def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
         yield service
 
 
-def to(page: playwright.Page, there: Served, address: str) -> None:
-    page.goto(f"{there.url}/app/{address}")
-
-
-def heading(page: playwright.Page, name: str | re.Pattern[str]) -> playwright.Locator:
-    return page.get_by_role("heading", level=1, name=name)
-
-
 def test_a_plan_is_foreseen_queued_watched_stopped_and_found(page: playwright.Page, there: Served) -> None:
     to(page, there, "benches/sim")
-    page.get_by_label("Plan", exact=True).select_option("asking")
+    choice(page, "Plan").select_option("asking")
     expect(page.locator(".forecast")).to_contain_text("Fits the bench", timeout=180_000)
+    expect(page.locator(".forecast")).to_contain_text("motor_speed_rad_s")
     page.get_by_role("button", name="Queue the run").click()
     expect(heading(page, re.compile("A plan that asks"))).to_be_visible()
     run = int(page.url.rpartition("/")[2])
     expect(page.get_by_text("Is the cage shut?")).to_be_visible()
     expect(page.locator(".chip", has_text="motor speed").first).to_contain_text("rad/s")
-    expect(page.get_by_role("region", name="Criteria", exact=True)).to_contain_text("s.peak_shaft_torque")
+    expect(region(page, "Criteria")).to_contain_text("s.peak_shaft_torque")
     page.get_by_role("button", name="Emergency stop sim").click()
     there.over(run)
     expect(page.get_by_text("error", exact=True)).to_be_visible()
-    expect(page.get_by_role("region", name="Segments and events", exact=True)).to_contain_text("safe_state")
+    expect(region(page, "Segments and events")).to_contain_text("safe_state")
+    expect(page.locator(".facts")).to_contain_text("safe stateconfirmed")
     with page.expect_popup() as report:
         page.get_by_role("link", name="report", exact=True).click()
     expect(heading(report.value, re.compile("A plan that asks"))).to_be_visible()
     report.value.close()
-    to(page, there, "benches/sim")
+    to(page, there, "#sim")  # as the former page had it
     page.get_by_role("button", name="It is safe: reset the emergency stop").click()
     expect(heading(page, "Free")).to_be_visible()
+
+
+def test_a_run_is_queued_and_ended_by_keyboard_alone(page: playwright.Page, there: Served) -> None:
+    to(page, there, "benches/sim")
+    plan = choice(page, "Plan")
+    expect(plan).to_contain_text("A plan that asks")
+    plan.focus()
+    page.keyboard.press("Home")
+    while plan.input_value() != "asking":  # not by its letters: a slow machine takes them for several words
+        page.keyboard.press("ArrowDown")
+    button = page.get_by_role("button", name="Queue the run")
+    expect(button).to_be_enabled(timeout=180_000)
+    page.keyboard.press("Tab")
+    while not button.evaluate("one => one === document.activeElement"):
+        page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    expect(page.get_by_text("Is the cage shut?")).to_be_visible()
+    page.get_by_role("button", name="End the run").focus()
+    page.keyboard.press("Enter")
+    expect(page.get_by_text("stopped by the operator")).to_be_visible()
+
+
+def test_a_service_without_news_is_not_taken_for_lost(page: playwright.Page, there: Served) -> None:
+    to(page, there, "benches/sim")
+    expect(heading(page, "Free")).to_be_visible()
+    page.evaluate(
+        """async () => {
+          const events = new EventSource("/api/v1/benches/sim/live");
+          const here = () => new Promise((heard) => events.addEventListener("here", heard, { once: true }));
+          await here();
+          await here();
+          events.close();
+        }"""  # twice ten seconds without news: longer than the page waits for a word
+    )
+    expect(page.get_by_text("The service does not answer")).to_be_hidden()
 
 
 def test_a_question_is_answered_on_the_operator_panel(page: playwright.Page, there: Served) -> None:
@@ -99,6 +121,7 @@ def test_a_question_is_answered_on_the_operator_panel(page: playwright.Page, the
         ("models", "Models"),
         ("controllers", "Controllers"),
         ("controllers/phase_stabilization", "phase_stabilization"),
+        ("identifications", "Identifications"),
         ("diagnoses", "Diagnoses"),
         ("campaigns", "Campaigns"),
         ("audit", "Audit log"),
@@ -114,8 +137,10 @@ def test_each_address_shows_its_view_again_after_a_reload_and_is_easy_to_use(
     title = page.title()
     page.reload()
     expect(heading(page, name)).to_be_visible()
-    assert (page.title(), page.url) == (title, f"{there.url}/app/{address}")
+    assert (page.title(), page.url) == (title, f"{there.url}/{address}")
     expect(page.locator("main").get_by_text("Loading")).to_have_count(0)
+    page.mouse.wheel(0, 5000)
+    expect(page.get_by_role("button", name=re.compile("Emergency stop"))).to_be_in_viewport()
     refuse_hard_to_use(page)
 
 
@@ -137,9 +162,9 @@ def test_the_palette_finds_by_keyboard_alone(page: playwright.Page, there: Serve
     to(page, there, "benches")
     expect(heading(page, "Benches")).to_be_visible()
     for words, url in (
-        ("acceptance", "/app/plans/acceptance"),
-        ("run 2", "/app/runs/2"),
-        ("sim", "/app/benches/sim"),
+        ("acceptance", "/plans/acceptance"),
+        ("run 2", "/runs/2"),
+        ("sim", "/benches/sim"),
     ):
         page.keyboard.press("Control+k")
         page.keyboard.type(words)
@@ -167,10 +192,18 @@ def test_runs_are_filtered_sorted_and_compared(page: playwright.Page, there: Ser
     for run in (1, 2):
         page.get_by_label(f"Compare run {run}", exact=True).check()
     page.get_by_role("button", name="Compare", exact=True).click()
-    expect(page.get_by_role("region", name="Different inputs", exact=True).locator("table")).to_contain_text(
-        "150"
-    )
-    expect(page.get_by_role("img", name=re.compile("shaft torque of runs 1, 2"))).to_be_visible()
+    inputs = region(page, "Different inputs").locator("table")
+    expect(inputs).to_contain_text("variables.torque_nm.default")
+    expect(inputs).to_contain_text("150")
+    expect(region(page, "Criteria").locator("table").first).to_contain_text("+")
+    plots = page.locator("figure.plot")
+    expect(plots.first.get_by_role("img", name=_PEAKS)).to_be_visible()
+    for at in range(3):
+        expect_drawn(plots.nth(at), "gain", "phase")
+    choice(page, "Stretch").select_option("whole")
+    choice(page, "Channel").select_option("driving_torque_ref_nm")
+    expect(page.get_by_role("img", name=_ASKED)).to_be_visible()
+    refuse_hard_to_use(page)
 
 
 def test_what_is_seen_of_a_run_stands_in_its_address(page: playwright.Page, there: Served) -> None:
@@ -202,6 +235,20 @@ def test_what_is_seen_of_a_run_stands_in_its_address(page: playwright.Page, ther
     expect(cursors).to_have_text(re.compile("shaft torque"))
     expect(plots.first).to_contain_text("wheel speed left")
     page.wait_for_function("text => document.querySelector('.cursors table')?.innerText === text", arg=seen)
+
+
+def test_a_run_is_asked_for_again_with_another_value(page: playwright.Page, there: Served) -> None:
+    to(page, there, "runs/2")
+    page.get_by_role("link", name="Again with other values").click()
+    expect(heading(page, re.compile("A short plan"))).to_be_visible()
+    value = page.get_by_role("spinbutton", name="torque_nm in N m")
+    expect(value).to_have_value("150")
+    value.fill("120")
+    button = page.get_by_role("button", name="Queue the run")
+    expect(button).to_be_enabled(timeout=180_000)
+    button.click()
+    expect(page.locator(".facts")).to_contain_text("torque_nm = 120")
+    there.over(int(page.url.rpartition("/")[2]))
 
 
 def test_who_has_no_token_can_stop_and_see_nothing(tmp_path: Path, page: playwright.Page) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,9 @@ from urllib.parse import urlencode
 
 import numpy as np
 import pytest
+from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
+from hil.core.files.signatures import sign_folder
 from hil.core.recording import read_recording
 from tests.hil.service.served import ASKING, SHORT, RefusedError, Served, served
 
@@ -50,6 +53,32 @@ def test_a_view_has_all_of_a_run_but_its_samples(there: Served) -> None:
     assert any(line["channel"] == TORQUE and line["above"] for line in view["limits"])
     assert set(view["evidence"]["files"]) >= {"report.pdf", "junit.xml"}
     assert len(view["evidence"]["samples_sha256"]) == 64
+
+
+def test_limits_are_those_that_the_run_was_watched_by(there: Served) -> None:
+    limits = {line["channel"]: line["above"] for line in there.get("/runs/1/view")["limits"]}
+    assert limits["shaft_torque_left_nm"] == 600.0
+    assert limits[TORQUE] == 1200.0  # of both sides
+    path = there.data / "runs/000001/result.json"
+    result = json.loads(path.read_text())
+    for one in result["limits"]:
+        one["above"] /= 2  # as if the bench had had half of today's
+    before = path.read_text()
+    path.write_text(json.dumps(result))
+    halved = {line["channel"]: line["above"] for line in there.get("/runs/1/view")["limits"]}
+    path.write_text(before)
+    assert halved == {channel: above / 2 for channel, above in limits.items()}
+
+
+def test_who_signed_a_run_is_seen_and_a_broken_signature_is_no_ones(there: Served) -> None:
+    folder, key = there.data / "runs/000001", Ed25519PrivateKey.generate()
+    assert there.get("/runs/1/view")["evidence"]["signed_by"] == ""
+    manifest, signature = sign_folder(folder, key, by="anna", at="2026-01-01T12:00:00Z")
+    assert there.get("/runs/1/view")["evidence"]["signed_by"] == "anna"
+    signature.write_bytes(bytes(64))
+    assert there.get("/runs/1/view")["evidence"]["signed_by"] == ""
+    manifest.unlink()
+    signature.unlink()
 
 
 def test_from_far_no_peak_is_lost(there: Served) -> None:

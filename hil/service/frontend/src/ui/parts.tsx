@@ -50,6 +50,13 @@ export function Loaded<T>({ of, children, what }: { of: Asked<T>; what: string; 
   return <p class="quiet">{`Loading ${what} …`}</p>;
 }
 
+const SHOWN = /\.(html|pdf|json|xml|txt|yaml|toml|csv|svg|png)$/;
+
+// A file of the service: what a browser shows comes beside the page, anything else is downloaded.
+export function FileLink({ href, name, children }: { href: string; name: string; children: ComponentChildren }): JSX.Element {
+  return SHOWN.test(name) ? <a href={href} target="_blank" rel="noopener">{children}</a> : <a href={href} download>{children}</a>;
+}
+
 export function Facts({ children }: { children: [ComponentChildren, ComponentChildren][] }): JSX.Element {
   return (
     <dl class="facts">

@@ -18,7 +18,7 @@ export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 
       <p class="kind">{about.filter(Boolean).join(", ")}</p>
       <Title class="headline" aria-live="polite">{headlineOf(bench, running ? running.title || running.plan : null)}</Title>
       {running ? <p><a href={to.run(running.id)}>{`Run ${running.id}`}</a>{`, by ${running.requested_by}: ${running.doing}`}</p> : null}
-      {bench.why && !running ? <p>{bench.why}</p> : null}
+      {bench.why && !(running && bench.state === "running") ? <p>{bench.why}</p> : null}
       {running ? <progress max={1} value={running.share ?? 0} aria-label="Progress of the run" /> : null}
       {message ? <p class="message" role="status">{message}</p> : null}
       <Actions state={state} />

@@ -14,8 +14,8 @@ import { Badge, Moment, Scroll, Section, verdictOf } from "../ui/parts.tsx";
 import { Banner, LostNotice } from "./bench-banner.tsx";
 import { Criteria } from "./criteria.tsx";
 import { Queue } from "./queue.tsx";
-import { StartPlan } from "./start-plan.tsx";
-import { Trends } from "./trends.tsx";
+import { StartPlan } from "./plans/start-plan.tsx";
+import { Trends } from "./trends/trends.tsx";
 
 const AGAIN_MS = 2000;
 const LATEST = 10;
@@ -74,7 +74,7 @@ function Latest({ bench, over }: { bench: string; over: string }): JSX.Element {
                 {runs.map((run) => (
                   <tr key={run.id}>
                     <td class="number"><a href={to.run(run.id)}>{run.id}</a></td><th scope="row">{run.title || run.plan}{run.reason ? <span class="reason">{run.reason.split("\n")[0]}</span> : null}</th>
-                    <td><Badge kind={verdictOf(run)} /></td><td><Moment at={run.ended_at} /></td><td>{run.requested_by}</td>
+                    <td><Badge kind={verdictOf(run)} />{run.safe_state === "not_confirmed" ? <span class="bad"> NOT CONFIRMED SAFE</span> : null}</td><td><Moment at={run.ended_at} /></td><td>{run.requested_by}</td>
                   </tr>
                 ))}
               </tbody>

@@ -8,9 +8,9 @@ import { attempt, useData } from "../data.ts";
 import { go } from "../router.ts";
 import { useMay } from "../session.ts";
 import { Heading, inWords, Loaded, Scroll, Section } from "../ui/parts.tsx";
-import { FormerPage } from "./former-page.tsx";
 import { GiveFile } from "./give-file.tsx";
-import { FileText } from "./plans.tsx";
+import { UseController } from "./design/use-controller.tsx";
+import { FileText } from "./plans/plans.tsx";
 
 export function Models(): JSX.Element {
   const models = useData<Model[]>("/models"), may = useMay();
@@ -25,7 +25,7 @@ export function Models(): JSX.Element {
           </table></Scroll>
         )}
       </Loaded>
-      <FormerPage what="Identify a model from runs" role="engineer" />
+      {may("engineer") ? <p><a href={to.list("identifications")}>Identify a model from runs</a></p> : null}
       {may("engineer") ? <Section title="Give a model" label="give"><GiveFile kind="model" path="/models" ending=".toml" onGiven={(name) => go(to.model(name))} /></Section> : null}
     </>
   );
@@ -44,14 +44,23 @@ export function Controllers(): JSX.Element {
           </table></Scroll>
         )}
       </Loaded>
-      <FormerPage what="Design a controller" role="engineer" />
+      {may("engineer") ? <p><a href={to.list("design")}>Design a controller</a></p> : null}
       {may("engineer") ? <Section title="Give a controller" label="give"><GiveFile kind="controller" path="/controllers" ending=".toml" onGiven={(name) => go(to.controller(name))} /></Section> : null}
     </>
   );
 }
 
 export const ModelView = ({ name }: { name: string }): JSX.Element => <Given name={name} kind="model" path="/models" list="models" />;
-export const ControllerView = ({ name }: { name: string }): JSX.Element => <Given name={name} kind="controller" path="/controllers" list="controllers" />;
+
+export function ControllerView({ name }: { name: string }): JSX.Element {
+  const may = useMay();
+  return (
+    <>
+      <Given name={name} kind="controller" path="/controllers" list="controllers" />
+      {may("engineer") ? <Section title="Use it in a plan" label="use"><UseController controller={name} /></Section> : null}
+    </>
+  );
+}
 
 interface GivenOptions {
   name: string;

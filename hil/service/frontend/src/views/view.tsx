@@ -6,15 +6,18 @@ import { Heading } from "../ui/parts.tsx";
 import { Audit } from "./audit.tsx";
 import { BenchView } from "./bench.tsx";
 import { Benches } from "./benches.tsx";
-import { Campaigns, CampaignView } from "./campaigns.tsx";
+import { CampaignView } from "./campaigns/campaign.tsx";
+import { Campaigns } from "./campaigns/campaigns.tsx";
 import { Compare } from "./compare.tsx";
+import { Design } from "./design/design.tsx";
 import { Controllers, ControllerView, Models, ModelView } from "./given.tsx";
 import { Panel } from "./panel.tsx";
-import { Plans, PlanView } from "./plans.tsx";
-import { RunView } from "./run.tsx";
-import { Runs } from "./runs.tsx";
+import { Plans, PlanView } from "./plans/plans.tsx";
+import { RunView } from "./runs/run.tsx";
+import { Runs } from "./runs/runs.tsx";
 import { Settings } from "./settings.tsx";
-import { Studies, StudyView } from "./studies.tsx";
+import { Diagnoses, DiagnosisView } from "./studies/diagnoses.tsx";
+import { Identifications, IdentificationView } from "./studies/identifications.tsx";
 
 export function View({ place }: { place: Place }): JSX.Element {
   switch (place.view) {
@@ -30,8 +33,11 @@ export function View({ place }: { place: Place }): JSX.Element {
     case "model": return <ModelView key={place.name} name={place.name} />;
     case "controllers": return <Controllers />;
     case "controller": return <ControllerView key={place.name} name={place.name} />;
-    case "diagnoses": return <Studies />;
-    case "diagnosis": return <StudyView key={place.id} id={place.id} />;
+    case "design": return <Design />;
+    case "identifications": return <Identifications />;
+    case "identification": return <IdentificationView key={place.id} id={place.id} />;
+    case "diagnoses": return <Diagnoses />;
+    case "diagnosis": return <DiagnosisView key={place.id} id={place.id} />;
     case "campaigns": return <Campaigns />;
     case "campaign": return <CampaignView key={place.id} id={place.id} />;
     case "audit": return <Audit />;

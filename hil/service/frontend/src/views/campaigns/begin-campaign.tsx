@@ -1,0 +1,55 @@
+// A campaign is begun: by a form, or by a text as `hil campaign` takes it, an example or a file of one's own.
+
+import type { JSX } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import { post } from "../../api/client.ts";
+import type { Campaign, CampaignExample } from "../../api/types.ts";
+import { to } from "../../addresses.ts";
+import { attempt, useData } from "../../data.ts";
+import { go } from "../../router.ts";
+import { CampaignForm } from "./form-fields.tsx";
+import { campaignText, NOTHING, type Chosen, type Property } from "./campaign-form.ts";
+
+const FORM = "form", OWN = "own file";
+
+export function BeginCampaign(): JSX.Element {
+  const examples = useData<CampaignExample[]>("/campaign-examples").data ?? [], schema = useData<Property>("/schemas/campaign").data;
+  const [from, setFrom] = useState(FORM), [text, setText] = useState(""), [chosen, setChosen] = useState<Chosen>(NOTHING);
+  const [beside, setBeside] = useState<Record<string, string>>({});
+  const byForm = from === FORM;
+  useEffect(() => { if (byForm && schema) setText(campaignText(schema, chosen)); }, [byForm, schema, chosen]);
+  const choose = (name: string) => {
+    setFrom(name);
+    setText(examples.find((one) => one.name === name)?.text ?? "");
+  };
+  const begin = async (event: Event) => {
+    event.preventDefault();
+    const campaign = await attempt(() => post<Campaign>("/campaigns", { text, files: from === OWN ? beside : {} }));
+    if (campaign) go(to.campaign(campaign.id));
+  };
+  return (
+    <form class="card" onSubmit={(event) => void begin(event)}>
+      <label class="field">Campaign
+        <select value={from} onChange={(event) => choose(event.currentTarget.value)}>
+          <option value={FORM}>by this form</option>
+          {examples.map((one) => <option key={one.name} value={one.name}>{`example: ${one.title || one.name}`}</option>)}
+          <option value={OWN}>a file of your own</option>
+        </select>
+      </label>
+      {byForm && schema ? <CampaignForm schema={schema} chosen={chosen} onChange={setChosen} /> : null}
+      {from === OWN ? <OwnFiles onText={setText} onBeside={setBeside} /> : null}
+      <label class="field">Content<textarea rows={byForm ? 6 : 14} spellcheck={false} required maxLength={200_000} readOnly={byForm} value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
+      <button type="submit" class="main">Simulate</button>
+    </form>
+  );
+}
+
+function OwnFiles({ onText, onBeside }: { onText: (text: string) => void; onBeside: (files: Record<string, string>) => void }): JSX.Element {
+  const read = async (files: FileList | null): Promise<[string, string][]> => Promise.all([...(files ?? [])].map(async (file): Promise<[string, string]> => [file.name, await file.text()]));
+  return (
+    <div class="row">
+      <label class="field">Campaign file<input type="file" accept=".yaml,.yml" onChange={(event) => void read(event.currentTarget.files).then((all) => onText(all[0]?.[1] ?? ""))} /></label>
+      <label class="field">Files of plan, model and controllers that the service lacks<input type="file" accept=".yaml,.yml,.toml" multiple onChange={(event) => void read(event.currentTarget.files).then((all) => onBeside(Object.fromEntries(all)))} /></label>
+    </div>
+  );
+}

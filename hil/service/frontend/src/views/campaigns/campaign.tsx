@@ -1,0 +1,42 @@
+// One campaign: how far it is, and afterwards distributions, what decides, and the worst cars.
+
+import type { ComponentChildren, JSX } from "preact";
+import { API } from "../../api/client.ts";
+import type { Campaign, CampaignFindings } from "../../api/types.ts";
+import { to } from "../../addresses.ts";
+import { useData } from "../../data.ts";
+import { percent } from "../../format.ts";
+import { go } from "../../router.ts";
+import { Badge, Facts, FileLink, Heading, Loaded, Moment, Section } from "../../ui/parts.tsx";
+import { CampaignActions, Progress, Shares, stateOf } from "./campaign-parts.tsx";
+import { Findings } from "./findings.tsx";
+
+const AGAIN_MS = 1500;
+const NAMES: Record<string, string> = { "report.html": "report", "report.pdf": "report as PDF", "simulations.parquet": "table (Parquet)", "campaign.json": "figures (JSON)" };
+
+export function CampaignView({ id }: { id: number }): JSX.Element {
+  const campaign = useData<Campaign>(`/campaigns/${id}`, AGAIN_MS);
+  return <Loaded of={campaign} what={`campaign ${id}`}>{(found) => <Found campaign={found} />}</Loaded>;
+}
+
+function Found({ campaign }: { campaign: Campaign }): JSX.Element {
+  const files = campaign.files ?? [], done = files.includes("campaign.json") && files.includes("simulations.parquet");
+  const findings = useData<CampaignFindings>(done ? `/campaigns/${campaign.id}/findings` : null);
+  const facts: ([string, ComponentChildren] | null)[] = [
+    ["plan", <a href={to.plan(campaign.plan)}>{campaign.plan}</a>], ["model", <a href={to.model(campaign.model)}>{campaign.model}</a>],
+    campaign.pass_share_wanted == null ? null : ["required pass rate", percent(campaign.pass_share_wanted, 1)],
+    ["asked for by", campaign.requested_by], ["asked for", <Moment at={campaign.asked_at} />],
+    campaign.ended_at ? ["ended", <Moment at={campaign.ended_at} />] : null, campaign.reason ? ["reason", campaign.reason] : null, campaign.place ? ["at", campaign.place] : null,
+  ];
+  return (
+    <>
+      <Heading kind={<a href={to.list("campaigns")}>{`Campaign ${campaign.id}`}</a>}>{campaign.title || campaign.name} <Badge kind={stateOf(campaign)} /></Heading>
+      <Facts>{facts.filter((one) => one !== null)}</Facts>
+      <div class="row"><CampaignActions campaign={campaign} onRemoved={() => go(to.list("campaigns"))} /></div>
+      <Section title="Simulated" label="progress"><Progress of={campaign} /></Section>
+      <Section title="Share that passes" label="shares"><Shares of={campaign} /></Section>
+      {done ? <Loaded of={findings} what="distributions">{(found) => <Findings of={found} />}</Loaded> : null}
+      {files.length ? <Section title="Files" label="files"><p class="links">{files.map((name) => <FileLink key={name} name={name} href={`${API}/campaigns/${campaign.id}/files/${encodeURIComponent(name)}`}>{NAMES[name] ?? name}</FileLink>)}</p></Section> : null}
+    </>
+  );
+}

@@ -1,0 +1,102 @@
+// What a campaign came to: how each criterion is distributed, what it hangs on, which cars are worst.
+
+import type { JSX } from "preact";
+import { useMemo, useState } from "preact/hooks";
+import type { CampaignFindings } from "../../api/types.ts";
+import { figure, limitText, percent } from "../../format.ts";
+import { CurvePlot, type Curve } from "../../plot/curve-plot.tsx";
+import { roleOf } from "../../plot/frame.ts";
+import { Badge, inWords, Scroll, Section } from "../../ui/parts.tsx";
+
+type Controller = CampaignFindings["controllers"][number];
+type Criterion = Controller["criteria"][number];
+
+const nameOf = (one: Controller): string => (one.controller ? inWords(one.controller) : "the plan's own");
+
+export function Findings({ of }: { of: CampaignFindings }): JSX.Element {
+  const { controllers } = of, ids = controllers[0]?.criteria.map((one) => one.id) ?? [];
+  const [chosen, setChosen] = useState("");
+  const id = ids.includes(chosen) ? chosen : mostFailed(controllers);
+  const errors = Object.entries(of.errors);
+  return (
+    <>
+      <Section title="Criteria" label="criteria"><Criteria controllers={controllers} chosen={id} onChoose={setChosen} /></Section>
+      <Section title={`Distribution of ${id}`} label="distribution"><Distribution controllers={controllers} id={id} /></Section>
+      <Section title={`What decides ${id}`} label="decides"><Decides controllers={controllers} id={id} units={of.inputs} /></Section>
+      <Section title="Worst cars" label="worst"><Worst of={of} /></Section>
+      {errors.length ? <Section title="What went wrong" label="errors"><ul>{errors.map(([why, count]) => <li key={why}>{`${count} with: ${why}`}</li>)}</ul></Section> : null}
+    </>
+  );
+}
+
+// That which passes least often is looked at first.
+function mostFailed(controllers: Controller[]): string {
+  const all = controllers.flatMap((one) => one.criteria).filter((one) => one.share !== null);
+  return all.sort((one, other) => (one.share ?? 1) - (other.share ?? 1))[0]?.id ?? controllers[0]?.criteria[0]?.id ?? "";
+}
+
+const of = (controller: Controller, id: string): Criterion | undefined => controller.criteria.find((one) => one.id === id);
+
+function Criteria({ controllers, chosen, onChoose }: { controllers: Controller[]; chosen: string; onChoose: (id: string) => void }): JSX.Element {
+  return (
+    <Scroll label="Criteria"><table>
+      <thead><tr><th scope="col">criterion</th><th scope="col" class="number">limit</th>{controllers.map((one) => <th scope="col" class="number" key={one.controller}>{`${nameOf(one)}: passes, median, range`}</th>)}</tr></thead>
+      <tbody>
+        {(controllers[0]?.criteria ?? []).map((one) => (
+          <tr key={one.id}>
+            <th scope="row"><button type="button" class="plain" aria-pressed={one.id === chosen} onClick={() => onChoose(one.id)}>{one.id}</button></th>
+            <td class="number">{one.below ? `below ${one.below}` : limitText(one.upper, one.lower, one.unit)}</td>
+            {controllers.map((controller) => { const found = of(controller, one.id); return <td class="number" key={controller.controller}>{found ? `${found.share === null ? "–" : percent(found.share, 1)}, ${figure(found.median, found.unit)}` : "–"}<span class="reason">{found?.least == null ? "" : `${figure(found.least)} to ${figure(found.largest)}`}</span></td>; })}
+          </tr>
+        ))}
+      </tbody>
+    </table></Scroll>
+  );
+}
+
+function Distribution({ controllers, id }: { controllers: Controller[]; id: string }): JSX.Element {
+  return <div class="plots">{controllers.map((one, at) => <Histogram key={one.controller} criterion={of(one, id)} name={nameOf(one)} role={roleOf(at)} />)}</div>;
+}
+
+function Histogram({ criterion, name, role }: { criterion: Criterion | undefined; name: string; role: string }): JSX.Element | null {
+  const curves = useMemo((): Curve[] => {
+    const found = criterion?.histogram;
+    return found ? [{ name, role, looks: "bars", x: found.counts.map((_, at) => found.start + (at + 0.5) * found.width), y: found.counts }] : [];
+  }, [criterion, name, role]);
+  if (!criterion || !curves.length) return null;
+  const limits = [criterion.upper, criterion.lower].filter((one): one is number => one !== null);
+  const about = `median ${figure(criterion.median, criterion.unit)}, ${figure(criterion.least)} to ${figure(criterion.largest, criterion.unit)}`;
+  return <CurvePlot title={name} label={`Histogram of ${criterion.id} with ${name}: ${about}`} says={about} curves={curves} x={{ unit: criterion.unit }} y={{ unit: "cars", low: 0 }} uprights={limits} />;
+}
+
+// The strongest first; a bar to the right rises together with the criterion, one to the left against it.
+function Decides({ controllers, id, units }: { controllers: Controller[]; id: string; units: Record<string, string> }): JSX.Element {
+  const names = Object.keys(units), strength = (name: string) => Math.max(...controllers.map((one) => Math.abs(of(one, id)?.rank_correlations[name] ?? 0)));
+  if (!names.length) return <p class="quiet">Nothing differs from car to car.</p>;
+  const sorted = names.sort((one, other) => strength(other) - strength(one));
+  return (
+    <Scroll label="What decides"><table>
+      <thead><tr><th scope="col">input</th>{controllers.map((one) => <th scope="col" key={one.controller}>{nameOf(one)}</th>)}</tr></thead>
+      <tbody>{sorted.map((name) => <tr key={name}><th scope="row">{name}</th>{controllers.map((one) => <td key={one.controller}><Correlation value={of(one, id)?.rank_correlations[name] ?? null} /></td>)}</tr>)}</tbody>
+    </table><p class="quiet">Rank correlation (Spearman's ρ) of the criterion with the input, from −1 to 1.</p></Scroll>
+  );
+}
+
+function Correlation({ value }: { value: number | null }): JSX.Element {
+  if (value === null) return <span class="quiet">–</span>;
+  return <span class="correlation"><span class="rho" style={{ "--from": `${50 + 50 * Math.min(0, value)}%`, "--wide": `${50 * Math.abs(value)}%` }} /> {figure(value)}</span>;
+}
+
+const SHOWN = 10;
+
+function Worst({ of: { controllers, inputs } }: { of: CampaignFindings }): JSX.Element {
+  const all = controllers.flatMap((controller) => controller.worst.map((one) => ({ controller, one }))).sort((a, b) => a.one.margin - b.one.margin).slice(0, SHOWN);
+  const names = Object.keys(inputs);
+  if (!all.length) return <p class="quiet">No simulation has a margin.</p>;
+  return (
+    <Scroll label="Worst cars"><table>
+      <thead><tr><th scope="col" class="number">simulation</th><th scope="col">controller</th><th scope="col" class="number">margin</th><th scope="col">verdict</th><th scope="col">binding criterion</th>{names.map((name) => <th scope="col" class="number" key={name}>{name}{inputs[name] && inputs[name] !== "1" ? ` in ${inputs[name]}` : ""}</th>)}</tr></thead>
+      <tbody>{all.map(({ controller, one }) => <tr key={`${controller.controller} ${one.simulation}`}><td class="number">{one.simulation}</td><td>{nameOf(controller)}</td><td class="number">{percent(one.margin, 1)}</td><td><Badge kind={one.verdict} /></td><td>{one.binding}</td>{names.map((name) => <td class="number" key={name}>{figure(one.inputs[name])}</td>)}</tr>)}</tbody>
+    </table></Scroll>
+  );
+}

@@ -1,0 +1,52 @@
+// A controller in place of one that a plan loads: a copy of the plan under a name of its own.
+
+import type { JSX } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import { get, getText, post } from "../../api/client.ts";
+import type { Controller, Plan } from "../../api/types.ts";
+import { to } from "../../addresses.ts";
+import { attempt } from "../../data.ts";
+import { go } from "../../router.ts";
+import { NameField } from "../../ui/name-field.tsx";
+import { loadedBy } from "./loaded-controllers.ts";
+
+interface Loading {
+  plan: Plan;
+  files: string[];
+}
+
+export function UseController({ controller: given }: { controller: string }): JSX.Element {
+  const [controllers, setControllers] = useState<string[]>([]), [plans, setPlans] = useState<Loading[]>([]);
+  const [controller, setController] = useState(given), [plan, setPlan] = useState(""), [file, setFile] = useState(""), [name, setName] = useState("");
+  useEffect(() => {
+    const control = new AbortController();
+    void attempt(async () => {
+      setControllers((await get<Controller[]>("/controllers", control.signal)).map((one) => one.name));
+      setPlans(await loadingPlans(control.signal));
+    });
+    return () => control.abort();
+  }, []);
+  const of = plans.find((one) => one.plan.name === plan) ?? plans[0];
+  const inPlace = of?.files.find((one) => one === file) ?? of?.files[0] ?? "", chosen = controller || controllers[0] || "";
+  const make = async (event: Event) => {
+    event.preventDefault();
+    if (!of) return;
+    const made = await attempt(() => post<Plan>(`/plans/${encodeURIComponent(of.plan.name)}/copies`, { name: name || `${of.plan.name}-${chosen}`.slice(0, 64), controllers: { [inPlace]: chosen } }));
+    if (made) go(to.plan(made.name));
+  };
+  return (
+    <form class="row" onSubmit={(event) => void make(event)}>
+      <label class="field">Controller<select value={chosen} onChange={(event) => setController(event.currentTarget.value)}>{controllers.map((one) => <option key={one}>{one}</option>)}</select></label>
+      <label class="field">in the plan<select value={of?.plan.name ?? ""} onChange={(event) => setPlan(event.currentTarget.value)}>{plans.map((one) => <option key={one.plan.name} value={one.plan.name}>{one.plan.title || one.plan.name}</option>)}</select></label>
+      <label class="field">in place of<select value={inPlace} onChange={(event) => setFile(event.currentTarget.value)}>{(of?.files ?? []).map((one) => <option key={one}>{one}</option>)}</select></label>
+      <NameField label="as plan" value={name} onChange={setName} optional placeholder={of && chosen ? `${of.plan.name}-${chosen}`.slice(0, 64) : ""} />
+      <button type="submit" disabled={!of || !chosen}>Make the plan</button>
+    </form>
+  );
+}
+
+async function loadingPlans(signal: AbortSignal): Promise<Loading[]> {
+  const plans = await get<Plan[]>("/plans", signal);
+  const texts = await Promise.all(plans.map((plan) => getText(`/plans/${encodeURIComponent(plan.name)}/text`, signal)));
+  return plans.map((plan, at) => ({ plan, files: loadedBy(texts[at] ?? "") })).filter((one) => one.files.length);
+}

@@ -1,0 +1,76 @@
+// Duration, peaks and criteria of a plan as the service predicts them.
+
+import type { JSX } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import { post, Refused } from "../../api/client.ts";
+import type { Forecast } from "../../api/types.ts";
+import { figure, percent } from "../../format.ts";
+import { Scroll } from "../../ui/parts.tsx";
+import { Criteria } from "../criteria.tsx";
+
+const WAIT_MS = 400;
+
+interface Wanted {
+  plan: string;
+  bench: string;
+  values: Record<string, number>;
+  text?: string; // of a plan that is not given yet
+}
+
+interface Foreseen {
+  forecast: Forecast | null;
+  error: string;
+  may: boolean;
+}
+
+const NOTHING: Foreseen = { forecast: null, error: "", may: false };
+
+export function useForecast(wanted: Wanted | null, form?: { current: HTMLFormElement | null }): Foreseen {
+  const [found, setFound] = useState(NOTHING);
+  const key = JSON.stringify(wanted);
+  useEffect(() => {
+    setFound(NOTHING);
+    if (!wanted) return undefined;
+    let current = true;
+    const predict = async () => {
+      try {
+        if (form && !form.current?.checkValidity()) throw new Error("A variable is beyond its bounds.");
+        const forecast = await post<Forecast>("/forecasts", wanted);
+        if (current) setFound({ forecast, error: "", may: forecast.fits });
+      } catch (error) {
+        const { message } = error as Error, fix = error instanceof Refused ? error.fix : "";
+        // what cannot be predicted may still be run
+        if (current) setFound({ forecast: null, error: fix ? `${message} (${fix})` : message, may: error instanceof Refused && error.status === 503 });
+      }
+    };
+    const timer = setTimeout(() => void predict(), WAIT_MS);
+    return () => { current = false; clearTimeout(timer); };
+  }, [key]);
+  return found;
+}
+
+// With criteria it says what each is predicted to be, else how many fail.
+export function ForecastShown({ of: { forecast, error }, criteria = false }: { of: Foreseen; criteria?: boolean }): JSX.Element {
+  if (error) return <p class="bad">{error}</p>;
+  if (!forecast) return <p class="quiet">Predicting duration and peaks …</p>;
+  const failing = forecast.criteria.filter((one) => one.verdict === "fail").length;
+  const loads = Object.entries(forecast.bus_loads ?? {});
+  return (
+    <>
+      <p class={forecast.fits ? "" : "bad"}>{`About ${Math.round(forecast.duration_s)} s of bench time. ${forecast.fits ? "Fits the bench." : "It exceeds the limits of the bench and cannot be queued."}`}</p>
+      {loads.length ? <p class={loads.some(([, load]) => load > 1) ? "bad" : ""}>{`Load of the buses: ${loads.map(([bus, load]) => `${bus} at most ${percent(load)}`).join(", ")}.`}</p> : null}
+      {failing ? <p class="bad">{`${failing} of ${forecast.criteria.length} criteria are predicted to fail.`}</p> : null}
+      {criteria && forecast.criteria.length ? <Criteria of={forecast.criteria} /> : null}
+      <Scroll label="Predicted peaks">
+        <table>
+          <thead><tr><th scope="col">predicted</th><th scope="col" class="number">peak</th><th scope="col" class="number">limit</th><th scope="col" class="number">used</th></tr></thead>
+          <tbody>
+            {Object.entries(forecast.predicted).map(([name, { value, limit }]) => (
+              <tr key={name}><th scope="row">{name}</th><td class={value > limit ? "number bad" : "number"}>{figure(value)}</td><td class="number">{figure(limit)}</td><td class="number">{percent(value / limit)}</td></tr>
+            ))}
+          </tbody>
+        </table>
+      </Scroll>
+    </>
+  );
+}

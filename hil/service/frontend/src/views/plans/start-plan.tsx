@@ -1,0 +1,64 @@
+// The form that starts a plan: what it will do is predicted first.
+
+import type { JSX } from "preact";
+import { useRef, useState } from "preact/hooks";
+import { post } from "../../api/client.ts";
+import type { Bench, Plan, Run } from "../../api/types.ts";
+import { to } from "../../addresses.ts";
+import { attempt, useData } from "../../data.ts";
+import { go } from "../../router.ts";
+import { ForecastShown, useForecast } from "./forecast.tsx";
+
+// Of an earlier run: its bench, and values of its variables as texts.
+export interface StartedFrom {
+  bench: string;
+  values: Record<string, string>;
+}
+
+// Either the bench is given, or the plan; the other is chosen.
+export function StartPlan({ bench, plan, from }: { bench?: string; plan?: string; from?: StartedFrom }): JSX.Element {
+  const plans = useData<Plan[]>("/plans").data ?? [];
+  const benches = useData<Bench[]>(bench ? null : "/benches").data ?? [];
+  const [chosenPlan, setPlan] = useState(plan ?? "");
+  const [chosenBench, setBench] = useState(bench ?? from?.bench ?? "");
+  const [texts, setTexts] = useState<Record<string, string>>(from?.values ?? {});
+  const form = useRef<HTMLFormElement>(null);
+  const found = plans.find((one) => one.name === (chosenPlan || plans[0]?.name));
+  const where = chosenBench || benches[0]?.name || "";
+  const values = Object.fromEntries(Object.entries(found?.variables ?? {}).map(([name, { default: usual }]) => [name, Number(texts[name] ?? usual)]));
+  const wanted = found && where ? { plan: found.name, bench: where, values } : null;
+  const forecast = useForecast(wanted, form);
+  const start = async (event: Event) => {
+    event.preventDefault();
+    if (!wanted) return;
+    const run = await attempt(() => post<Run>("/runs", { ...wanted, key: crypto.randomUUID?.() ?? "" }));
+    if (run) go(to.run(run.id));
+  };
+  return (
+    <form ref={form} class="start" onSubmit={(event) => void start(event)}>
+      {plan ? null : (
+        <label class="field">Plan
+          <select value={found?.name ?? ""} onChange={(event) => { setPlan(event.currentTarget.value); setTexts({}); }}>
+            {plans.map((one) => <option key={one.name} value={one.name}>{one.title || one.name}</option>)}
+          </select>
+        </label>
+      )}
+      {bench ? null : (
+        <label class="field">Bench
+          <select value={where} onChange={(event) => setBench(event.currentTarget.value)}>
+            {benches.map((one) => <option key={one.name} value={one.name}>{one.name}</option>)}
+          </select>
+        </label>
+      )}
+      {plan || !found ? null : <p class="quiet"><a href={to.plan(found.name)}>{found.name}</a>{found.description ? `: ${found.description}` : ""}</p>}
+      {Object.entries(found?.variables ?? {}).map(([name, variable]) => (
+        <label class="field" key={`${found?.name} ${name}`}>{`${variable.description || name}${variable.unit ? ` in ${variable.unit}` : ""}`}
+          <input type="number" step="any" required name={name} value={texts[name] ?? String(variable.default)} min={variable.lower ?? undefined} max={variable.upper ?? undefined}
+            onInput={(event) => setTexts({ ...texts, [name]: event.currentTarget.value })} />
+        </label>
+      ))}
+      <div class="forecast" aria-live="polite"><ForecastShown of={forecast} /></div>
+      <button type="submit" class="main" disabled={!forecast.may}>Queue the run</button>
+    </form>
+  );
+}

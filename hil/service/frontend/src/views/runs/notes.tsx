@@ -1,0 +1,75 @@
+// What people add to a run: words by which it is found again, and what they noticed.
+
+import type { JSX } from "preact";
+import { useState } from "preact/hooks";
+import { ask, post } from "../../api/client.ts";
+import type { Note, RunChoices, RunNotes } from "../../api/types.ts";
+import { to } from "../../addresses.ts";
+import { attempt, useData } from "../../data.ts";
+import { useMay, useMe } from "../../session.ts";
+import { Moment, Section } from "../../ui/parts.tsx";
+
+const AGAIN_MS = 5000;
+const TAG = "[A-Za-z0-9][A-Za-z0-9_.:\\-]{0,39}";
+
+export function Notes({ run }: { run: number }): JSX.Element {
+  const path = `/runs/${run}`, found = useData<RunNotes>(`${path}/notes`, AGAIN_MS), may = useMay();
+  const { tags, notes } = found.data ?? { tags: [], notes: [] };
+  const change = (work: () => Promise<unknown>) => attempt(work).then(found.again);
+  if (!may("operator") && !tags.length && !notes.length) return <></>;
+  return (
+    <Section title="Tags and notes" label="notes">
+      <div class="row level small">
+        {tags.map((tag) => (
+          <span class="chip tag" key={tag}><a href={`${to.list("runs")}?tag=${encodeURIComponent(tag)}`}>{tag}</a>
+            {may("operator") ? <button type="button" class="plain" aria-label={`Take the tag ${tag} off`} onClick={() => void change(() => ask("DELETE", `${path}/tags/${encodeURIComponent(tag)}`))}>×</button> : null}
+          </span>
+        ))}
+        {may("operator") ? <AddTag onAdd={(tag) => change(() => ask("PUT", `${path}/tags/${encodeURIComponent(tag)}`))} /> : null}
+      </div>
+      {notes.map((note) => <NoteShown key={note.id} note={note} onRemove={() => void change(() => ask("DELETE", `${path}/notes/${note.id}`))} />)}
+      {may("operator") ? <AddNote onAdd={(text) => change(() => post(`${path}/notes`, { text }))} /> : null}
+    </Section>
+  );
+}
+
+function AddTag({ onAdd }: { onAdd: (tag: string) => Promise<unknown> }): JSX.Element {
+  const [tag, setTag] = useState(""), choices = useData<RunChoices>("/run-list/choices");
+  const add = (event: Event) => {
+    event.preventDefault();
+    void onAdd(tag).then(() => setTag(""));
+  };
+  return (
+    <form class="row level" onSubmit={add}>
+      <label>{"Tag "}<input list="known-tags" required pattern={TAG} title="letters, digits, _ . : and -" maxLength={40} size={14} autocomplete="off" value={tag} onInput={(event) => setTag(event.currentTarget.value)} /></label>
+      <datalist id="known-tags">{(choices.data?.tags ?? []).map((one) => <option key={one} value={one} />)}</datalist>
+      <button type="submit">Add</button>
+    </form>
+  );
+}
+
+function NoteShown({ note, onRemove }: { note: Note; onRemove: () => void }): JSX.Element {
+  const may = useMay(), me = useMe();
+  return (
+    <article class="note" aria-label={`Note of ${note.who}`}>
+      <p class="quiet">{note.who}, <Moment at={note.at} />
+        {may("engineer") || (may("operator") && note.who === me.name) ? <button type="button" class="plain" onClick={() => { if (confirm("Remove this note?")) onRemove(); }}>Remove</button> : null}
+      </p>
+      <p class="written">{note.text}</p>
+    </article>
+  );
+}
+
+function AddNote({ onAdd }: { onAdd: (text: string) => Promise<unknown> }): JSX.Element {
+  const [text, setText] = useState("");
+  const add = (event: Event) => {
+    event.preventDefault();
+    void onAdd(text).then(() => setText(""));
+  };
+  return (
+    <form onSubmit={add}>
+      <label class="field">Note<textarea class="prose" rows={2} maxLength={4000} value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
+      <button type="submit" disabled={!text.trim()}>Add the note</button>
+    </form>
+  );
+}

@@ -1,0 +1,65 @@
+// What runs are filtered by: choices are what there is, words are looked for in plan, title, device and person.
+
+import type { JSX } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import type { RunChoices } from "../../api/types.ts";
+import { useData } from "../../data.ts";
+import { inWords } from "../../ui/parts.tsx";
+import { FILTERS, type Filter, type RunsQuery } from "./runs-query.ts";
+
+const NAMES: Record<Filter, string> = { plan: "Plan", bench: "Bench", dut: "Device", verdict: "Verdict", requested_by: "Asked for by", state: "State", tag: "Tag" };
+const VERDICTS = ["pass", "fail", "error", "done"];
+const STATES = ["waiting_approval", "queued", "running", "ended", "interrupted", "cancelled"];
+const WAIT_MS = 300;
+
+export function RunFilters({ query, onChange }: { query: RunsQuery; onChange: (query: RunsQuery) => void }): JSX.Element {
+  const choices = useData<RunChoices>(`/run-list/choices${query.filters.plan ? `?plan=${encodeURIComponent(query.filters.plan)}` : ""}`).data;
+  const offered: Record<Filter, string[]> = {
+    plan: choices?.plans ?? [], bench: choices?.benches ?? [], dut: choices?.duts ?? [], requested_by: choices?.people ?? [], verdict: VERDICTS, state: STATES, tag: choices?.tags ?? [],
+  };
+  const filtered = FILTERS.some((name) => query.filters[name]) || query.text || query.since || query.until || query.criterion;
+  const clear = () => onChange({ ...query, filters: Object.fromEntries(FILTERS.map((name) => [name, ""])) as Record<Filter, string>, text: "", since: "", until: "", criterion: "", above: "", below: "" });
+  return (
+    <form class="filters small" role="search" aria-label="Runs" onSubmit={(event) => event.preventDefault()}>
+      <Typed label="Words" type="search" value={query.text} onChange={(text) => onChange({ ...query, text })} />
+      {FILTERS.map((name) => (
+        <Choice key={name} label={NAMES[name]} value={query.filters[name]} all={offered[name]} onChange={(value) => onChange({ ...query, filters: { ...query.filters, [name]: value } })} />
+      ))}
+      <Typed label="From" type="date" value={query.since} onChange={(since) => onChange({ ...query, since })} />
+      <Typed label="To" type="date" value={query.until} onChange={(until) => onChange({ ...query, until })} />
+      <Choice label="Criterion" value={query.criterion} all={choices?.criteria ?? []} onChange={(criterion) => onChange({ ...query, criterion, sort: criterion ? query.sort : query.sort === "value" ? "run" : query.sort })} />
+      {query.criterion ? <Typed label="at least" type="number" value={query.above} onChange={(above) => onChange({ ...query, above })} /> : null}
+      {query.criterion ? <Typed label="at most" type="number" value={query.below} onChange={(below) => onChange({ ...query, below })} /> : null}
+      {filtered ? <button type="button" class="plain" onClick={clear}>Clear all</button> : null}
+    </form>
+  );
+}
+
+function Choice({ label, value, all, onChange }: { label: string; value: string; all: string[]; onChange: (value: string) => void }): JSX.Element {
+  return (
+    <label class="field">{label}
+      <select value={value} onChange={(event) => onChange(event.currentTarget.value)}>
+        <option value="">all</option>
+        {value && !all.includes(value) ? <option value={value}>{value}</option> : null}
+        {all.map((one) => <option key={one} value={one}>{label === "Verdict" || label === "State" ? inWords(one) : one}</option>)}
+      </select>
+    </label>
+  );
+}
+
+// Asked for when somebody has stopped typing.
+function Typed({ label, type, value, onChange }: { label: string; type: "search" | "date" | "number"; value: string; onChange: (value: string) => void }): JSX.Element {
+  const [text, setText] = useState(value);
+  useEffect(() => setText(value), [value]);
+  useEffect(() => {
+    if (text === value) return undefined;
+    const timer = setTimeout(() => onChange(text), WAIT_MS);
+    return () => clearTimeout(timer);
+  }, [text]);
+  const take = (event: { currentTarget: HTMLInputElement }) => setText(event.currentTarget.value);
+  return (
+    <label class="field">{label}
+      {type === "date" ? <input type="date" value={text} onInput={take} /> : type === "number" ? <input type="number" step="any" value={text} onInput={take} /> : <input type="search" maxLength={200} value={text} onInput={take} />}
+    </label>
+  );
+}

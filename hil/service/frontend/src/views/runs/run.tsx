@@ -1,0 +1,111 @@
+// A run, under way and afterwards: one view, over what is measured or over what was recorded.
+
+import type { JSX } from "preact";
+import { useEffect } from "preact/hooks";
+import { post } from "../../api/client.ts";
+import type { Run, RunView as View } from "../../api/types.ts";
+import { to } from "../../addresses.ts";
+import { attempt, useData } from "../../data.ts";
+import { figure } from "../../format.ts";
+import { useLive } from "../../live.ts";
+import { Board } from "../../plot/board.tsx";
+import { rangeText } from "../../plot/range.ts";
+import { go, setQuery } from "../../router.ts";
+import { useMay } from "../../session.ts";
+import { benchInSight } from "../../shell/stop.tsx";
+import { useStore } from "../../store.ts";
+import { Badge, Facts, Heading, Loaded, Moment, Section, verdictOf } from "../../ui/parts.tsx";
+import { Banner, LostNotice } from "../bench-banner.tsx";
+import { againWith } from "../plans/start-values.ts";
+import { Criteria } from "../criteria.tsx";
+import { Notes } from "./notes.tsx";
+import { Downloads, Evidence, Happenings } from "./run-parts.tsx";
+
+const OVER = ["ended", "interrupted", "cancelled"];
+const WAITING_MS = 2000;
+
+export function RunView({ run: id }: { run: number }): JSX.Element {
+  const run = useData<Run>(`/runs/${id}`, WAITING_MS);
+  return <Loaded of={run} what={`run ${id}`}>{(found) => <Found key={found.state} run={found} />}</Loaded>;
+}
+
+function Found({ run }: { run: Run }): JSX.Element {
+  const isLive = run.state === "running", isOver = OVER.includes(run.state);
+  const recorded = isOver && (run.files ?? []).includes("recording.mcap");
+  const view = useData<View>(isLive || recorded ? `/runs/${run.id}/view` : null, isLive ? WAITING_MS : 0);
+  const live = useLive(isLive ? run.bench : null);
+  const state = useStore(live.state), decided = useStore(live.criteria);
+  useEffect(() => { benchInSight.value = isOver ? "" : run.bench; }, [isOver, run.bench]);
+  const criteria = isLive ? (decided?.run === run.id ? decided.criteria : []) : view.data?.criteria ?? [];
+  return (
+    <>
+      <LostNotice />
+      <Heading kind={<>{`Run ${run.id} on `}<a href={to.bench(run.bench)}>{run.bench}</a></>}>{run.title || run.plan} <Badge kind={verdictOf(run)} /></Heading>
+      {isLive && state?.running?.id === run.id ? <Banner state={state} /> : null}
+      <RunFacts run={run} />
+      <RunActions run={run} />
+      {view.data ? (
+        <Section title="Plots" label="plots"><Board view={view.data} plan={run.plan} bench={isLive ? run.bench : null} /></Section>
+      ) : isLive ? <p class="quiet">Nothing has been measured yet.</p> : recorded ? <Loaded of={view} what="the recording">{() => null}</Loaded> : null}
+      {isLive || criteria.length ? <Section title="Criteria" label="criteria"><Criteria of={criteria} onSegment={(segment) => view.data && showSegment(view.data, segment)} /></Section> : null}
+      {view.data ? <Happenings view={view.data} /> : null}
+      <Notes run={run.id} />
+      {isOver ? <Downloads run={run} /> : null}
+      {view.data?.evidence ? <Evidence of={view.data.evidence} /> : null}
+    </>
+  );
+}
+
+function RunFacts({ run }: { run: Run }): JSX.Element {
+  const values = Object.entries(run.values).map(([name, value]) => `${name} = ${figure(value)}`).join(", ");
+  const safe = { confirmed: "confirmed", not_confirmed: "NOT CONFIRMED", not_needed: "not needed" };
+  return (
+    <Facts>
+      {([
+        ["plan", <a href={to.plan(run.plan)}>{run.plan}</a>],
+        values ? ["variables", values] : null,
+        run.dut ? ["device under test", run.dut] : null,
+        ["asked for by", run.requested_by],
+        run.approved_by ? ["approved by", run.approved_by] : null,
+        ["queued", <Moment at={run.queued_at} />],
+        run.started_at ? ["began", <Moment at={run.started_at} />] : null,
+        run.ended_at ? ["ended", <Moment at={run.ended_at} />] : null,
+        run.safe_state ? ["safe state", <span class={run.safe_state === "not_confirmed" ? "bad" : ""}>{safe[run.safe_state]}</span>] : null,
+        run.reason ? ["reason", run.reason] : null,
+        run.hazard ? ["hazard", run.hazard] : null,
+      ] as ([string, JSX.Element | string] | null)[]).filter((one) => one !== null)}
+    </Facts>
+  );
+}
+
+function RunActions({ run }: { run: Run }): JSX.Element | null {
+  const may = useMay();
+  const again = async () => {
+    const queued = await attempt(() => post<Run>("/runs", { plan: run.plan, bench: run.bench, values: run.values }));
+    if (queued) go(to.run(queued.id));
+  };
+  const recorded = OVER.includes(run.state) && (run.files ?? []).includes("recording.mcap");
+  const waits = run.state === "queued" || run.state === "waiting_approval";
+  return (
+    <div class="row level">
+      {may("operator") && OVER.includes(run.state) ? <button type="button" onClick={() => void again()}>Again</button> : null}
+      {may("operator") && OVER.includes(run.state) ? <a href={againWith(run)}>Again with other values</a> : null}
+      {may("operator") && waits ? <button type="button" onClick={() => void attempt(() => post(`/runs/${run.id}/abort`))}>Cancel</button> : null}
+      {run.state === "waiting_approval" && may("engineer") ? <button type="button" class="main" onClick={() => void attempt(() => post(`/runs/${run.id}/approve`))}>Approve</button> : null}
+      {recorded && may("engineer") ? <a href={`${to.list("diagnoses")}?runs=${run.id}`}>Diagnose</a> : null}
+      {recorded && may("engineer") ? <a href={`${to.list("identifications")}?runs=${run.id}`}>Identify a model</a> : null}
+      {run.state === "ended" ? <a href={`${to.list("compare")}?runs=${run.id}`}>Compare with another run</a> : null}
+      <a href={`${to.list("runs")}?plan=${encodeURIComponent(run.plan)}`}>All runs of this plan</a>
+    </div>
+  );
+}
+
+// A criterion is looked at where it was judged.
+function showSegment(view: View, segment: string): void {
+  const found = view.marks.find((mark) => mark.kind === "segment" && mark.name === segment);
+  if (!found || found.end_s == null) return;
+  const query = new URLSearchParams(location.search);
+  query.set("t", rangeText({ from: found.start_s, to: found.end_s }));
+  setQuery(query);
+  document.getElementById("section-plots")?.scrollIntoView();
+}

@@ -1,0 +1,100 @@
+// All runs: filtered, sorted and paged by the service; two or more are chosen to be compared.
+
+import type { JSX } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import type { FoundRun, FoundRuns } from "../../api/types.ts";
+import { to } from "../../addresses.ts";
+import { useData } from "../../data.ts";
+import { figure, limitText, whole } from "../../format.ts";
+import { go, useQuery } from "../../router.ts";
+import { Badge, Heading, Moment, Scroll, verdictOf } from "../../ui/parts.tsx";
+import { RunFilters } from "./run-filters.tsx";
+import { PAGE, queryFrom, sorted, toAddress, toService, type Order, type RunsQuery } from "./runs-query.ts";
+
+const AGAIN_MS = 10_000;
+const MOST_COMPARED = 6;
+
+export function Runs(): JSX.Element {
+  const [address, setAddress] = useQuery();
+  const query = queryFrom(address);
+  const found = useData<FoundRuns>(`/run-list?${toService(query)}`, AGAIN_MS);
+  const [shown, setShown] = useState<FoundRuns | null>(null); // stays while the next page is asked for
+  const [chosen, setChosen] = useState<number[]>([]);
+  useEffect(() => { if (found.data) setShown(found.data); }, [found.data]);
+  const set = (changed: RunsQuery, step = true) => setAddress(toAddress(changed), step);
+  const choose = (run: number) => setChosen(chosen.includes(run) ? chosen.filter((one) => one !== run) : [...chosen, run].slice(-MOST_COMPARED));
+  const total = shown?.total ?? 0, pages = Math.max(1, Math.ceil(total / PAGE));
+  return (
+    <>
+      <Heading>Runs</Heading>
+      <RunFilters query={query} onChange={(changed) => set({ ...changed, page: 1 })} />
+      <div class="part-head">
+        <p aria-live="polite">{shown ? `${whole(total)} ${total === 1 ? "run" : "runs"}` : "…"}{found.error ? <span class="bad"> {found.error.message}</span> : null}</p>
+        <span class="buttons small">
+          {chosen.length ? <span class="quiet">{`${chosen.length} chosen`}</span> : null}
+          <button type="button" disabled={chosen.length < 2} onClick={() => go(`${to.list("compare")}?runs=${chosen.join(",")}`)}>Compare</button>
+          {chosen.length ? <button type="button" class="plain" onClick={() => setChosen([])}>Choose none</button> : null}
+        </span>
+      </div>
+      {shown && total === 0 ? <p class="quiet">No run passes these filters.</p> : null}
+      {shown && total > 0 ? <Table runs={shown.runs} query={query} chosen={chosen} busy={found.loading} onChoose={choose} onSort={(by) => set(sorted(query, by))} /> : null}
+      {pages > 1 ? (
+        <nav class="row pages" aria-label="Pages of runs">
+          <button type="button" disabled={query.page <= 1} onClick={() => set({ ...query, page: query.page - 1 })}>Previous</button>
+          <span>{`Page ${query.page} of ${whole(pages)}`}</span>
+          <button type="button" disabled={query.page >= pages} onClick={() => set({ ...query, page: query.page + 1 })}>Next</button>
+        </nav>
+      ) : null}
+    </>
+  );
+}
+
+const COLUMNS: [Order | "", string, string][] = [["run", "run", "number"], ["plan", "plan", ""], ["verdict", "verdict", ""], ["bench", "bench", ""], ["dut", "device", ""], ["ended", "ended", ""], ["", "by", ""]];
+
+interface TableOptions {
+  runs: FoundRun[];
+  query: RunsQuery;
+  chosen: number[];
+  busy: boolean;
+  onChoose: (run: number) => void;
+  onSort: (by: Order) => void;
+}
+
+function Table({ runs, query, chosen, busy, onChoose, onSort }: TableOptions): JSX.Element {
+  const columns = query.criterion ? [...COLUMNS.slice(0, 3), ["value", query.criterion, "number"] as [Order, string, string], ...COLUMNS.slice(3)] : COLUMNS;
+  return (
+    <Scroll label="Runs">
+      <table aria-busy={busy}>
+        <thead>
+          <tr><th scope="col"><span class="hidden">compare</span></th>
+            {columns.map(([by, name, kind]) => (
+              <th key={name} scope="col" class={kind} aria-sort={by === query.sort ? (query.rising ? "ascending" : "descending") : undefined}>
+                {by ? <button type="button" class="plain sort" onClick={() => onSort(by)}>{name}<span aria-hidden="true">{by === query.sort ? (query.rising ? " ▲" : " ▼") : ""}</span></button> : name}
+              </th>
+            ))}
+          </tr>
+        </thead>
+        <tbody>{runs.map((one) => <Row key={one.run.id} found={one} withValue={query.criterion !== ""} chosen={chosen.includes(one.run.id)} onChoose={onChoose} />)}</tbody>
+      </table>
+    </Scroll>
+  );
+}
+
+function Row({ found, withValue, chosen, onChoose }: { found: FoundRun; withValue: boolean; chosen: boolean; onChoose: (run: number) => void }): JSX.Element {
+  const { run } = found;
+  const values = Object.entries(run.values).map(([name, value]) => `${name} = ${figure(value)}`).join(", ");
+  const about = [values, run.reason?.split("\n")[0] ?? ""].filter(Boolean).join("; ");
+  return (
+    <tr>
+      <td><input type="checkbox" aria-label={`Compare run ${run.id}`} checked={chosen} onChange={() => onChoose(run.id)} /></td>
+      <td class="number"><a href={to.run(run.id)}>{run.id}</a></td>
+      <th scope="row"><a href={to.run(run.id)} class="quietly">{run.title || run.plan}</a>{found.tags?.map((tag) => <span class="tag" key={tag}>{tag}</span>)}{about ? <span class="reason">{about}</span> : null}</th>
+      <td><Badge kind={verdictOf(run)} />{run.safe_state === "not_confirmed" ? <span class="bad"> NOT CONFIRMED SAFE</span> : null}</td>
+      {withValue ? <td class={`number ${found.criterion_verdict === "fail" ? "bad" : ""}`}>{figure(found.value, found.unit)}<span class="reason">{limitText(found.upper, found.lower)}</span></td> : null}
+      <td><a href={to.bench(run.bench)}>{run.bench}</a></td>
+      <td>{run.dut || "–"}</td>
+      <td>{run.ended_at ? <Moment at={run.ended_at} /> : <Moment at={run.queued_at} />}</td>
+      <td>{run.requested_by}</td>
+    </tr>
+  );
+}

@@ -1,0 +1,79 @@
+// Diagnoses: why runs and a model differ; begun here, and what came of one.
+
+import type { JSX } from "preact";
+import { useState } from "preact/hooks";
+import { post } from "../../api/client.ts";
+import type { Diagnosis, Model, Study } from "../../api/types.ts";
+import { to } from "../../addresses.ts";
+import { attempt, useData } from "../../data.ts";
+import { go, useQuery } from "../../router.ts";
+import { useMay } from "../../session.ts";
+import { Heading, Loaded, Section } from "../../ui/parts.tsx";
+import { runsFrom } from "./chosen-runs.ts";
+import { Alternatives, Effects } from "./effects.tsx";
+import { ErrorMap, Gaps } from "./gaps.tsx";
+import { KeepModel } from "./keep-model.tsx";
+import { ChooseRuns, StudyList, StudyPage } from "./study-parts.tsx";
+
+export function Diagnoses(): JSX.Element {
+  const may = useMay();
+  return (
+    <>
+      <Heading>Diagnoses</Heading>
+      {may("engineer") ? <Begin /> : null}
+      <Section title="All diagnoses" label="all"><StudyList kind="diagnosis" /></Section>
+    </>
+  );
+}
+
+function Begin(): JSX.Element {
+  const [query] = useQuery();
+  const models = (useData<Model[]>("/models").data ?? []).filter((one) => one.kind !== "transfer_function");
+  const [runs, setRuns] = useState(() => runsFrom(query.get("runs"))), [holdout, setHoldout] = useState<number[]>([]);
+  const [chosen, setModel] = useState(query.get("model") ?? ""), [minutes, setMinutes] = useState("10");
+  const model = chosen || models[0]?.name || "";
+  const begin = async (event: Event) => {
+    event.preventDefault();
+    const study = await attempt(() => post<Study>("/diagnoses", { model, runs, holdout, at_most_min: Number(minutes) }));
+    if (study) go(to.diagnosis(study.id));
+  };
+  return (
+    <form class="card" onSubmit={(event) => void begin(event)}>
+      <h2>Find what a model lacks</h2>
+      <div class="row">
+        <label class="field">Model<select value={model} onChange={(event) => setModel(event.currentTarget.value)}>{models.map((one) => <option key={one.name}>{one.name}</option>)}</select></label>
+        <label class="field">Time limit, minutes<input type="number" min="0.1" max="60" step="any" required value={minutes} onInput={(event) => setMinutes(event.currentTarget.value)} /></label>
+      </div>
+      <div class="halves">
+        <ChooseRuns legend="Runs to compare with the model" chosen={runs} onChange={setRuns} without={holdout} />
+        <ChooseRuns legend="Runs held out, for validation" chosen={holdout} onChange={setHoldout} without={runs} />
+      </div>
+      <button type="submit" class="main" disabled={!runs.length || !model}>Diagnose</button>
+    </form>
+  );
+}
+
+export function DiagnosisView({ id }: { id: number }): JSX.Element {
+  return <StudyPage id={id} kind="diagnosis">{(study) => <Result study={study} />}</StudyPage>;
+}
+
+function Result({ study }: { study: Study }): JSX.Element | null {
+  const done = (study.files ?? []).includes("diagnosis.json");
+  const found = useData<Diagnosis>(done ? `/diagnoses/${study.id}` : null);
+  if (!done) return null;
+  return <Loaded of={found} what="the diagnosis">{(data) => <Found data={data} />}</Loaded>;
+}
+
+function Found({ data }: { data: Diagnosis }): JSX.Element {
+  const hasHoldout = Object.keys(data.holdout_gap).length > 0;
+  return (
+    <>
+      <Effects of={data} />
+      {data.alternatives.length ? <Alternatives of={data} /> : null}
+      <Section title="Error over noise, before → after" label="map"><ErrorMap of={data.map} /></Section>
+      <Section title="Gap, % of the signal" label="gap"><Gaps of={data.gap} label="Gap" /></Section>
+      {hasHoldout ? <Section title="Gap on runs that were held out" label="holdout"><Gaps of={data.holdout_gap} label="Gap of held-out runs" /></Section> : null}
+      <KeepModel study={data.study} file="model.toml" what="improved model" />
+    </>
+  );
+}

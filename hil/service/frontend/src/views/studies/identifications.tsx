@@ -1,0 +1,111 @@
+// Identifications: from runs with chirps or multisines to a model; measured and fitted responses, intervals.
+
+import type { JSX } from "preact";
+import { useMemo, useState } from "preact/hooks";
+import { post } from "../../api/client.ts";
+import type { Identification, Study } from "../../api/types.ts";
+import { to } from "../../addresses.ts";
+import { attempt, useData } from "../../data.ts";
+import { figure, wordsOf } from "../../format.ts";
+import { roleOf } from "../../plot/frame.ts";
+import { CurvePlot, type Curve } from "../../plot/curve-plot.tsx";
+import { go, useQuery } from "../../router.ts";
+import { useMay } from "../../session.ts";
+import { Badge, Heading, inWords, Loaded, Scroll, Section } from "../../ui/parts.tsx";
+import { KeepModel } from "./keep-model.tsx";
+import { ChooseRuns, StudyList, StudyPage } from "./study-parts.tsx";
+import { runsFrom } from "./chosen-runs.ts";
+
+export function Identifications(): JSX.Element {
+  const may = useMay();
+  return (
+    <>
+      <Heading>Identifications</Heading>
+      {may("engineer") ? <Begin /> : null}
+      <Section title="All identifications" label="all"><StudyList kind="identification" /></Section>
+    </>
+  );
+}
+
+function Begin(): JSX.Element {
+  const [query] = useQuery();
+  const [runs, setRuns] = useState(() => runsFrom(query.get("runs")));
+  const begin = async (event: Event) => {
+    event.preventDefault();
+    const study = await attempt(() => post<Study>("/identifications", { runs }));
+    if (study) go(to.identification(study.id));
+  };
+  return (
+    <form class="card" onSubmit={(event) => void begin(event)}>
+      <h2>Identify a model</h2>
+      <ChooseRuns legend="Runs with chirps or multisines" chosen={runs} onChange={setRuns} />
+      <button type="submit" class="main" disabled={!runs.length}>Identify</button>
+    </form>
+  );
+}
+
+export function IdentificationView({ id }: { id: number }): JSX.Element {
+  return <StudyPage id={id} kind="identification">{(study) => <Result study={study} />}</StudyPage>;
+}
+
+function Result({ study }: { study: Study }): JSX.Element | null {
+  const done = (study.files ?? []).includes("identification.json");
+  const found = useData<Identification>(done ? `/identifications/${study.id}` : null);
+  if (!done) return null;
+  return <Loaded of={found} what="the identification">{(data) => <Identified data={data} />}</Loaded>;
+}
+
+function Identified({ data }: { data: Identification }): JSX.Element {
+  const { verdict, warnings, resonance_hz: resonance, chain } = data;
+  return (
+    <>
+      <p><Badge kind={verdict} />{` ${chain ? `a ${inWords(chain)} chain fits the data` : "no chain fits the data"}${resonance ? `, resonance ${figure(resonance, "Hz")}` : ""}`}</p>
+      {warnings.map((one) => <p class="bad" key={one}>{one}</p>)}
+      <KeepModel study={data.study} file={chain ? "physical.toml" : "model.toml"} what="model" />
+      <Section title="Responses to the motor torque" label="responses"><Responses data={data} /></Section>
+      <Section title="Parameters" label="parameters"><Parameters of={data.parameters} /></Section>
+    </>
+  );
+}
+
+function Responses({ data }: { data: Identification }): JSX.Element {
+  const { frequency_hz: hz, outputs } = data;
+  const x = useMemo(() => hz.map((one) => one ?? 0), [hz]);
+  const coherence = useMemo((): Curve[] => outputs.map((one, at) => ({ name: wordsOf(one.channel), role: roleOf(at), x, y: one.coherence })), [outputs, x]);
+  return (
+    <div class="plots">
+      {outputs.map((output) => <Response key={output.channel} output={output} x={x} />)}
+      <CurvePlot title="Coherence" label="Coherence of every output with the motor torque" curves={coherence} x={{ unit: "Hz", log: true }} y={{ unit: "", low: 0, high: 1.05 }} />
+    </div>
+  );
+}
+
+const MEASURED = { name: "measured, 95 %", role: roleOf(1), looks: "dots" } as const;
+const FIT = { name: "fit", role: roleOf(0) };
+type Output = Identification["outputs"][number];
+
+function Response({ output, x }: { output: Output; x: number[] }): JSX.Element {
+  const name = wordsOf(output.channel);
+  const [gain, phase] = useMemo((): [Curve[], Curve[]] => [
+    [{ ...MEASURED, x, y: output.gain_db, reach: { lower: output.gain_lower_db, upper: output.gain_upper_db } }, { ...FIT, x, y: output.fit_gain_db }],
+    [{ ...MEASURED, x, y: output.phase_deg, reach: { lower: output.phase_lower_deg, upper: output.phase_upper_deg } }, { ...FIT, x, y: output.fit_phase_deg }],
+  ], [output, x]);
+  return (
+    <>
+      <CurvePlot title={`Gain to ${name}`} label={`Gain from motor torque to ${name}, measured and fitted`} curves={gain} x={{ unit: "Hz", log: true }} y={{ unit: "dB" }} />
+      <CurvePlot title={`Phase to ${name}`} label={`Phase from motor torque to ${name}, measured and fitted`} curves={phase} x={{ unit: "Hz", log: true }} y={{ unit: "°" }} />
+    </>
+  );
+}
+
+// Five digits: intervals of a good identification differ in the fourth.
+const digits = (value: number | null): string => (value === null ? "–" : String(Number(value.toPrecision(5))).replace("-", "−"));
+
+function Parameters({ of }: { of: Identification["parameters"] }): JSX.Element {
+  return (
+    <Scroll label="Parameters of the model"><table>
+      <thead><tr><th scope="col">parameter</th><th scope="col" class="number">value</th><th scope="col" class="number">95 % interval</th><th scope="col">unit</th></tr></thead>
+      <tbody>{of.map((one) => <tr key={one.name}><th scope="row">{inWords(one.name)}</th><td class="number">{digits(one.value)}</td><td class="number">{one.lower === null ? "not known" : `${digits(one.lower)} to ${digits(one.upper)}`}</td><td>{one.unit}</td></tr>)}</tbody>
+    </table></Scroll>
+  );
+}

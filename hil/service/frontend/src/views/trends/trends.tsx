@@ -1,0 +1,60 @@
+// How a criterion of a plan went from run to run, with its limits, its scatter, Cpk, and what tells a drift.
+
+import type { JSX } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import type { Trend } from "../../api/types.ts";
+import { useData } from "../../data.ts";
+import { figure, limitText } from "../../format.ts";
+import { Section } from "../../ui/parts.tsx";
+import { Signals } from "./signals.tsx";
+import { TrendPlot } from "./trend-plot.tsx";
+
+const LEAST = 5; // values of which a scatter is reported
+
+export function Trends({ bench, plan }: { bench: string; plan: string }): JSX.Element | null {
+  const [dut, setDut] = useState(""), [criterion, setCriterion] = useState("");
+  const query = new URLSearchParams({ bench, plan, ...(dut ? { dut } : {}) });
+  const all = useData<Trend[]>(`/trends?${query}`).data ?? [];
+  const found = all.filter((one) => one.points.some((point) => point.value !== null));
+  const [duts, setDuts] = useState<string[]>([]);
+  useEffect(() => {
+    if (!dut) setDuts([...new Set(all.flatMap((one) => one.points.map((point) => point.dut)))].filter(Boolean).sort());
+  }, [all, dut]);
+  const trend = found.find((one) => one.criterion === criterion) ?? found[0];
+  if (!trend) return null;
+  return (
+    <Section title={`Trend over runs of ${plan}`} label="trend">
+      <Drifting of={found} chosen={trend.criterion} onChoose={setCriterion} />
+      <div class="row small">
+        <label>Criterion <select value={trend.criterion} onChange={(event) => setCriterion(event.currentTarget.value)}>{found.map((one) => <option key={one.criterion}>{one.criterion}</option>)}</select></label>
+        <label>of <select value={dut} onChange={(event) => setDut(event.currentTarget.value)}><option value="">all devices</option>{duts.map((one) => <option key={one}>{one}</option>)}</select></label>
+      </div>
+      <p class="quiet">{figuresOf(trend)}</p>
+      <TrendPlot trend={trend} label={`${trend.criterion} over ${trend.points.length} runs: ${figuresOf(trend)}`} />
+      <Signals of={trend.signals ?? []} />
+    </Section>
+  );
+}
+
+function figuresOf(trend: Trend): string {
+  const limits = limitText(trend.upper, trend.lower, trend.unit), count = trend.count ?? 0;
+  const hasCpk = trend.cpk !== null && trend.cpk !== undefined;
+  const cpk = hasCpk ? `, Cpk ${figure(trend.cpk)} (95 %: ${figure(trend.cpk_lower)} to ${figure(trend.cpk_upper)}, ${count} runs)` : limits !== "–" && count < LEAST ? `, Cpk: too few runs (${count} of ${LEAST})` : "";
+  return `mean ${figure(trend.mean, trend.unit)}${limits === "–" ? "" : `, limit ${limits}`}${cpk}`;
+}
+
+// A drift is told before it fails: criteria whose newest value is part of a pattern that chance seldom makes.
+function Drifting({ of, chosen, onChoose }: { of: Trend[]; chosen: string; onChoose: (criterion: string) => void }): JSX.Element | null {
+  const drifting = of.filter((one) => (one.signals ?? []).some((signal) => signal.present));
+  if (!drifting.length) return null;
+  return (
+    <p class="notice" role="status">{"May drift: "}
+      {drifting.map((one) => <button type="button" class="plain" key={one.criterion} aria-pressed={one.criterion === chosen} onClick={() => onChoose(one.criterion)}>{`${one.criterion} (${reasonOf(one)})`}</button>)}
+    </p>
+  );
+}
+
+function reasonOf({ signals = [] }: Trend): string {
+  const present = signals.filter((signal) => signal.present), more = present.length - 1;
+  return `${present[0]?.text ?? ""}${more > 0 ? `, and ${more} more` : ""}`;
+}
