@@ -91,3 +91,7 @@ _RULES: tuple[tuple[Rule, int, Callable[[Sequence[float]], bool]], ...] = (
     ("nelson_5", 3, _some_beyond(2, 2.0)),
     ("nelson_6", 5, _some_beyond(4, 1.0)),
 )
+
+
+#: How many values it takes to break each rule.
+LENGTHS: dict[str, int] = {rule: length for rule, length, _ in _RULES}

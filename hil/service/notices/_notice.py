@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import datetime
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from hil.api_schemas.api import RunData
+from hil.api_schemas.api import RunData, TrendData
+from hil.service.control_chart import LENGTHS
 from hil.service.notices._settings import Event
 
 _SAFE = {"confirmed": "confirmed", "not_confirmed": "NOT CONFIRMED", "not_needed": "not needed"}
@@ -52,6 +54,27 @@ def of_run(run: RunData, address: str) -> Notice | None:
     subject = f"{run.bench}: run {run.id} of '{name}' ended: {verdict.upper()}"
     safe = f"Safe state: {_SAFE[run.safe_state]}. " if run.safe_state else ""
     return _notice(f"run-{run.id}-ended", events, run, subject, f"{safe}{run.reason}", data)
+
+
+def of_drifts(run: RunData, found: Iterable[TrendData], address: str) -> list[Notice]:
+    """Of criteria whose values break a rule of control charts with this run; once for a stretch."""
+    notices = []
+    for trend in found:
+        for signal in trend.signals:
+            begins = len(signal.runs) == LENGTHS[signal.rule]
+            if not (begins and signal.present and signal.runs[-1] == run.id):
+                continue
+            subject = f"{run.bench}: {trend.criterion} of '{run.title or run.plan}' drifts"
+            text = f"{signal.text[0].upper()}{signal.text[1:]} (runs {', '.join(map(str, signal.runs))})."
+            data = {
+                "criterion": trend.criterion,
+                "rule": signal.rule,
+                "runs": signal.runs,
+                "url": _link(address, f"trends?bench={run.bench}&plan={run.plan}"),
+            }
+            id_ = f"drift-{run.id}-{trend.criterion}-{signal.rule}"
+            notices.append(_notice(id_, ("drift",), run, subject, text, data))
+    return notices
 
 
 def of_stop(bench: str, why: str, address: str) -> Notice:

@@ -13,8 +13,10 @@ from hil.core.errors import BadInputError
 from hil.core.files.toml_file import parse_toml, toml_text
 
 #: `run_failed` is any end but `pass` and `done`; a limit that trips is one of them.
-Event = Literal["run_ended", "run_failed", "limit_tripped", "approval_asked", "bench_stopped", "test"]
-EVENTS: tuple[Event, ...] = ("run_failed", "approval_asked", "bench_stopped")
+Event = Literal[
+    "run_ended", "run_failed", "limit_tripped", "approval_asked", "bench_stopped", "drift", "test"
+]
+EVENTS: tuple[Event, ...] = ("run_failed", "approval_asked", "bench_stopped", "drift")
 
 _Address = Annotated[str, Field(pattern=r"^[^\s@<>,]+@[^\s@<>,]+$", max_length=254)]
 _FIX = "see docs/how-to/notices.md"

@@ -9,16 +9,18 @@ from typing import TYPE_CHECKING
 from hil.api_schemas.api import OVER, RunData
 from hil.core.errors import HilError
 from hil.execution.background import apart
-from hil.service.notices._notice import of_run, of_stop, of_test
+from hil.service.notices._notice import of_drifts, of_run, of_stop, of_test
 from hil.service.notices._post import Post, Seen
 from hil.service.notices._senders import send
 from hil.service.store import DatabaseAwayError
+from hil.service.trends import trends
 
 if TYPE_CHECKING:
     from hil.service.service import Service
 
 _LOOK_S = 1.0
 _MOST = 1000
+_NEWEST = 100  # runs of a trend, as the page shows it
 _LAST = 2**31 - 1
 
 
@@ -53,6 +55,8 @@ class NoticeWatch:
                 notice = of_run(run, self._post.settings.address)
                 if notice is not None and not (run.id in asked and run.id in before.asked):
                     self._post.add(notice)
+                if run.state == "ended":
+                    self._look_for_drifts(run)
         last = max((run.id for run in runs), default=0)
         last = max(last, before.last_run if before is not None else 0)
         still = frozenset(run.id for run in runs if run.state not in OVER)
@@ -69,6 +73,11 @@ class NoticeWatch:
             if run is not None:
                 found[number] = run
         return [found[number] for number in sorted(found)]
+
+    def _look_for_drifts(self, run: RunData) -> None:
+        points = self._service.runs.criteria(run.bench, run.plan, run.dut or None, _NEWEST)
+        for notice in of_drifts(run, trends(points), self._post.settings.address):
+            self._post.add(notice)
 
     def _look_at_stops(self) -> bool:
         """Benches that were stopped since the last look; a stop before the first look is no news."""

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hil.app import schemas
 from hil.app.log import LOG
 from hil.cli._app import guarded
-from hil.cli.commands import schema
 
 RECORDING = "time_s,motor_torque_ref_nm,motor_speed_rad_s\n" + "".join(f"{k / 10},1,2\n" for k in range(20))
 
@@ -69,7 +69,7 @@ def test_a_mistake_of_the_program_leaves_its_traceback_in_a_log_and_says_where(
     named, tmp_path, capsys, monkeypatch
 ):
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    monkeypatch.setitem(schema.SCHEMAS, "plan", lambda: 1 / 0)
+    monkeypatch.setitem(schemas.SCHEMAS, "plan", lambda: 1 / 0)
     assert guarded(["schema", *(["--log", str(tmp_path / "hil-own.log")] if named else [])]) == 3
     told = capsys.readouterr().err
     [log] = tmp_path.iterdir()
