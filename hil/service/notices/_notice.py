@@ -70,7 +70,7 @@ def of_drifts(run: RunData, found: Iterable[TrendData], address: str) -> list[No
                 "criterion": trend.criterion,
                 "rule": signal.rule,
                 "runs": signal.runs,
-                "url": _link(address, f"trends?bench={run.bench}&plan={run.plan}"),
+                "url": _link(address, f"benches/{run.bench}"),
             }
             id_ = f"drift-{run.id}-{trend.criterion}-{signal.rule}"
             notices.append(_notice(id_, ("drift",), run, subject, text, data))
@@ -101,7 +101,7 @@ def _notice(
 
 
 def _link(address: str, path: str) -> str:
-    return f"{address.rstrip('/')}/app/{path}" if address else ""
+    return f"{address.rstrip('/')}/{path}" if address else ""
 
 
 def _now() -> datetime.datetime:

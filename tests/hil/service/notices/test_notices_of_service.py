@@ -44,7 +44,7 @@ def test_a_run_that_fails_and_a_stop_are_sent_once(tmp_path: Path) -> None:
             service.over(failed)
             data = _wait_for(server, "run_failed")[0]
             assert data["run"]["id"] == failed
-            assert data["url"] == f"http://there/app/runs/{failed}"
+            assert data["url"] == f"http://there/runs/{failed}"
             assert "FAIL" in data["subject"]
             service.ask("POST", "/api/v1/benches/sim/emergency-stop")
             assert _wait_for(server, "bench_stopped")[0]["bench"] == "sim"

@@ -32,7 +32,7 @@ def test_a_webhook_gets_signed_json(monkeypatch: pytest.MonkeyPatch) -> None:
     content = json.loads(body)
     assert content["type"] == "bench_stopped"
     assert content["data"]["bench"] == "rig"
-    assert content["data"]["url"] == "https://bench.example.org/app/benches/rig"
+    assert content["data"]["url"] == "https://bench.example.org/benches/rig"
 
 
 def test_the_signature_is_that_of_the_standard() -> None:
@@ -83,4 +83,4 @@ def test_mail_has_subject_text_and_link() -> None:
     assert message["date"]
     content = message.get_content()
     assert "pressed by the door switch" in content
-    assert "https://bench.example.org/app/benches/rig" in content
+    assert "https://bench.example.org/benches/rig" in content
