@@ -27,6 +27,8 @@ _SHORT_MEAN_S = 0.25  # vibration from 8 Hz on has no part in it
 class _Following(WindowMetric):
     """A metric of how a channel follows the step's own quantity."""
 
+    follows_step: ClassVar[bool] = True
+
     def objection(self, segment: PlannedSegment) -> str:
         """No step, or one of another torque than the channel's."""
         return (

@@ -32,6 +32,7 @@ class SettlingTime(WindowMetric):
 
     name: ClassVar[str] = "settling_time"
     never_negative: ClassVar[bool] = True
+    follows_step: ClassVar[bool] = True
     band_percent: float = Field(
         default=5.0, gt=0, le=100, description="half width of the band, % of the step's size"
     )
