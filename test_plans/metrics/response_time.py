@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
+from hil.core.channels import CHANNELS
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import Array, PlannedSegment
@@ -21,6 +22,7 @@ from test_plans.metrics._window import WindowMetric
 
 _WHEEL, _MOTOR = "wheel_speed_rad_s", "motor_torque_nm"
 _SETS_IN = 10.0  # %
+_BY_ROUNDING = 0.5  # of a sample: so far a line begins too soon by the place of the samples alone
 _SHORT_MEAN_S = 0.25  # vibration from 8 Hz on has no part in it
 
 
@@ -36,6 +38,10 @@ class _Following(WindowMetric):
             or _samples.not_comparable(segment, self.channel)
             or super().objection(segment)
         )
+
+
+class AlreadyThereError(NoValueError):
+    """What is timed had happened before the window began."""
 
 
 class ResponseTime(_Following):
@@ -55,11 +61,11 @@ class ResponseTime(_Following):
         """The first crossing."""
         return (
             f"Time from the step until {self.subject} first reaches {self.share_percent:g} % of the step's "
-            f"size, linear between samples, {self.window}."
+            f"size, linear between samples, {self.window}. No value where it is there as the window begins."
         )
 
     def compute(self, recording: Recording, segment: Segment) -> float:
-        """Seconds; NotReachedError where the channel does not get there."""
+        """Seconds; NotReachedError where the channel does not get there, NoValueError where it was before."""
         size = _signed_size(segment)
         refuse_reversal(recording, segment)
         time, values = self.samples(recording, segment)
@@ -73,9 +79,32 @@ class ResponseTime(_Following):
             )
         first = int(reached[0])
         if first == 0:
-            return max(0.0, float(time[0] - segment.step_s))
+            raise AlreadyThereError(
+                f"{self.channel} is at {values[0]:.4g} {CHANNELS[self.channel].unit} as the window begins, "
+                f"beyond {self.share_percent:g} % of the step already: what it carries beside (orders of the "
+                "wheel, noise, an earlier response) hides this one"
+            )
         part = (share - progress[first - 1]) / (progress[first] - progress[first - 1])
         return float(time[first - 1] + part * (time[first] - time[first - 1]) - segment.step_s)
+
+
+class TimeToTolerance(ResponseTime):
+    """The same as a check that a response arrives in time: one that is there at the step has."""
+
+    @property
+    def definition(self) -> str:
+        """With what is there at the step."""
+        return (
+            f"Time from the step until {self.subject} first reaches {self.share_percent:g} % of the step's "
+            f"size, linear between samples, {self.window}; 0 where it is there at the step."
+        )
+
+    def compute(self, recording: Recording, segment: Segment) -> float:
+        """Seconds, 0 where it is there at the step; NotReachedError where the channel does not get there."""
+        try:
+            return super().compute(recording, segment)
+        except AlreadyThereError:
+            return 0.0
 
 
 class Delay(ResponseTime):
@@ -93,15 +122,23 @@ class Delay(ResponseTime):
         return (
             f"Time from the step until {self.subject} sets in: where a straight line through its first "
             f"crossings of {_SETS_IN:g} % and {self.share_percent:g} % of the step's size begins at 0 %, "
-            f"{self.window}."
+            f"{self.window}. No value where that is before the step."
         )
 
     def compute(self, recording: Recording, segment: Segment) -> float:
-        """Seconds, not below 0; NotReachedError where the channel does not get there."""
+        """Seconds; NotReachedError where the channel does not get there, NoValueError below 0."""
         later = super().compute(recording, segment)
         first = self.model_copy(update={"share_percent": _SETS_IN})
         sooner = super(Delay, first).compute(recording, segment)
-        return max(0.0, sooner - (later - sooner) * _SETS_IN / (self.share_percent - _SETS_IN))
+        found = sooner - (later - sooner) * _SETS_IN / (self.share_percent - _SETS_IN)
+        if found < -_BY_ROUNDING * recording.sample_time_s:
+            raise NoValueError(
+                f"the line through the first crossings of {_SETS_IN:g} % ({1000 * sooner:.3g} ms) and "
+                f"{self.share_percent:g} % ({1000 * later:.3g} ms) begins {-1000 * found:.3g} ms before the "
+                f"step: {self.channel} carries something beside the response (orders of the wheel, noise), "
+                "or bends too much for a line"
+            )
+        return max(0.0, found)
 
 
 class ResponseTimeShaftTorque(ResponseTime):
