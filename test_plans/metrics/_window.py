@@ -85,6 +85,13 @@ class WindowMetric(Metric):
             return no_step(segment)
         return ""
 
+    def planned_length_s(self, segment: PlannedSegment) -> float:
+        """How long the window is in a segment planned so, s; a transient may end it sooner."""
+        since_change = self.since == "first_change" and segment.first_change_s is not None
+        before_s = segment.step_s - (segment.first_change_s or 0.0) if since_change else 0.0
+        until_s = segment.end_s - segment.step_s if self.to_s is None else self.to_s
+        return before_s + until_s - self.from_s
+
     @property
     def channels(self) -> tuple[str, ...]:
         """The channel; where the window ends with the transient, also what shows its end."""

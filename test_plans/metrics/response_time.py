@@ -23,6 +23,7 @@ from test_plans.metrics._window import WindowMetric
 _WHEEL, _MOTOR = "wheel_speed_rad_s", "motor_torque_nm"
 _SETS_IN = 10.0  # %
 _BY_ROUNDING = 0.5  # of a sample: so far a line begins too soon by the place of the samples alone
+_ROUNDED_S = 2e-6  # times of a segment are rounded to 1e-6 s
 _SHORT_MEAN_S = 0.25  # vibration from 8 Hz on has no part in it
 
 
@@ -168,8 +169,12 @@ class Arrival(_Following):
             "of the step's size: positive beyond it, negative short of it."
         )
 
+    def objection(self, segment: PlannedSegment) -> str:
+        """Also a window that is shorter than the mean."""
+        return _no_room(self.planned_length_s(segment), self.mean_s) or super().objection(segment)
+
     def compute(self, recording: Recording, segment: Segment) -> float:
-        """Percent of the step, in its direction."""
+        """Percent of the step, in its direction; NoValueError in a window that is shorter than the mean."""
         size = _signed_size(segment)
         refuse_reversal(recording, segment)
         return 100 * (self._mean(recording, segment, self.channel) - segment.reference_after) / size
@@ -193,6 +198,9 @@ class Arrival(_Following):
     def _mean(self, recording: Recording, segment: Segment, channel: str) -> float:
         """Of the end of the window."""
         start_s, end_s = self.bounds_s(recording, segment)
+        short = _no_room(end_s - start_s, self.mean_s)
+        if short:
+            raise NoValueError(short)
         time, values = cut(recording, segment, channel, start_s, end_s)
         first = int(np.searchsorted(time, time[-1] - self.mean_s, "right"))
         if segment.wheel_orders and _WHEEL in recording:
@@ -202,6 +210,13 @@ class Arrival(_Following):
             if whole >= 1:
                 first += int(np.searchsorted(np.abs(periods), abs(periods[-1]) - whole))
         return float(np.mean(values[first:]))
+
+
+def _no_room(length_s: float, mean_s: float) -> str:
+    """Why a window has no mean; '' where it has."""
+    if length_s >= mean_s - _ROUNDED_S:
+        return ""
+    return f"the window is {length_s:.3g} s long, the mean alone takes {mean_s:g} s: give 'mean_s'"
 
 
 def _integral(time: Array, values: Array) -> Array:

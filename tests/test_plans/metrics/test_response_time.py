@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from test_plans.conductor import PlannedSegment
 from test_plans.metrics import (
     ArrivalShaftTorque,
     Delay,
@@ -13,6 +14,7 @@ from test_plans.metrics import (
     OvershootPercentShaftTorque,
     PeakShaftTorque,
     ResponseTimeShaftTorque,
+    Ripple,
     TimeToTolerance,
     Trough,
 )
@@ -46,6 +48,19 @@ def test_what_never_gets_there_says_how_far_it_got() -> None:
 def test_arrival_is_the_distance_of_the_last_mean(after: float, percent: float) -> None:
     recording = recording_of(TIME, shaft_torque_nm=first_order(0.0, after))
     assert ArrivalShaftTorque().compute(recording, STEP) == pytest.approx(percent, abs=1e-3)
+
+
+def test_a_window_shorter_than_the_mean_has_no_arrival() -> None:
+    recording = recording_of(TIME, shaft_torque_nm=first_order(0.0, 326.0))
+    short = ArrivalShaftTorque(to_s=0.3)
+    with pytest.raises(NoValueError, match=r"window is 0\.3 s long, the mean alone takes 2 s: give 'mean_s'"):
+        short.compute(recording, STEP)
+    planned = PlannedSegment("up", "step", 1.0, 0.0, 326.0, end_s=5.0)
+    assert "is 0.3 s long" in short.objection(planned)
+    assert "is 1.5 s long" in Ripple(channel="shaft_torque_nm", to_s=1.5).objection(planned)
+    for metric in (ArrivalShaftTorque(to_s=2.0), ArrivalShaftTorque(to_s=0.3, mean_s=0.3)):
+        assert metric.objection(planned) == ""
+        assert np.isfinite(metric.compute(recording, STEP))
 
 
 def test_a_step_down_that_goes_too_far_has_arrived_beyond() -> None:
