@@ -101,6 +101,7 @@ class Segment(_Frozen):
     )
     complete: bool = True
     controller: str = ""
+    controller_name: str = Field("", description="in the controller's file; '' in earlier recordings")
     initial_speed_km_h: float = 0.0
     load: Literal["vehicle", "speed"] = Field(
         "vehicle", description="load by the dynos: simulate the vehicle, or hold a speed"

@@ -288,6 +288,7 @@ class BenchConductor:
                 ),
                 complete=False,
                 controller=driven.stabilization if driven else "",
+                controller_name=driven.name if driven else "",
                 load=self._load,
                 initial_speed_km_h=round(self._speed_m_s * 3.6, 6),
                 reference_before=planned.reference_before,
