@@ -16,7 +16,7 @@ from hil.core.result import Segment
 from reports import labels
 from reports.figure import Band, Figure, Section, Trace, not_drawn
 from reports.labels import THIN, Label, channel_label, channel_unit
-from reports.members import controller_name
+from reports.members import controller_of
 from reports.stretch import Array, Lines, cut, line
 
 DESCRIPTION = "Single-sided amplitude spectrum, linear trend removed"
@@ -114,7 +114,7 @@ def sweep_section(recording: Recording, segment: Segment) -> Section:
     over_time = [_time_figure(where, (name,)) for name in names]
     spectra = [_spectrum_figure(where, name, hann=False) for name in names]
     missing = [channel_label(n) for n, figure in zip(names, over_time, strict=True) if figure is None]
-    controller = f", {controller_name(segment.controller).lower()}" if segment.controller else ""
+    controller = f", {controller_of(segment).lower()}" if segment.controller else ""
     start, end = (round(time_s, 3) for time_s in (segment.start_s, segment.end_s))
     when = f"{labels.nominal(start)} to {labels.nominal(end, 's')} of the recording"
     text = f"{segment.kind.capitalize()}{controller}, {when}."

@@ -9,7 +9,7 @@ from hil.analysis.comparison import Comparison, CriterionRow, ResponseRow, diffe
 from hil.core.result import Segment
 from reports import labels
 from reports.labels import channel_label, criterion_title
-from reports.members import controller_name
+from reports.members import controller_of
 from reports.overlay_figures import overlay
 from reports.parts import Page, Part, Table, page_html, page_pdf
 
@@ -204,5 +204,5 @@ def _segment_part(found: Comparison, segment: Segment) -> Part:
         other.controller for run in found.runs for other in run.result.segments if other.id == segment.id
     }
     same = len(loaded) == 1 and segment.controller
-    name = controller_name(segment.controller) if same else segment.kind.capitalize()
+    name = controller_of(segment) if same else segment.kind.capitalize()
     return Part(segment.id, f"{name}, {speed} ({segment.id})", "", figures=overlay(found.runs, segment))

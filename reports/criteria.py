@@ -8,7 +8,7 @@ from typing import get_args
 
 from hil.core.result import CriterionResult, CriterionVerdict, RunResult, Segment
 from reports import labels
-from reports.members import controller_name
+from reports.members import controller_of
 
 _USUAL_DECIMALS, _MOST_DECIMALS = 4, 9
 
@@ -88,7 +88,7 @@ def _group_title(criterion: CriterionResult, segments: dict[str, Segment]) -> st
     if segment is None:
         return f"{id_} (not executed)" if criterion.verdict == "not_judged" else "Whole run"
     speed = labels.nominal(segment.initial_speed_km_h, "km/h")
-    name = controller_name(segment.controller) if segment.controller else segment.kind.capitalize()
+    name = controller_of(segment) or segment.kind.capitalize()
     return f"{name}, {speed} ({segment.id})"
 
 

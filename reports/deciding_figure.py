@@ -14,6 +14,7 @@ from reports import labels
 from reports.figure import Figure, Level, Mark
 from reports.labels import Label
 from reports.members import members
+from reports.slip_figures import deciding_slip, slip_channel
 from reports.step_figures import FIRST_SECONDS, Overlay
 from reports.stretch import cut
 
@@ -27,6 +28,10 @@ def deciding_figure(recording: Recording, result: RunResult, criterion: Criterio
     """The response that `criterion` judges, with its rival's if it has one; None without samples to draw."""
     by_id = {segment.id: segment for segment in result.segments}
     segment = by_id.get(criterion.id.partition(".")[0])
+    slipping = slip_channel(criterion.definition)
+    if segment is not None and slipping:
+        slip = deciding_slip(recording, segment, criterion, slipping)
+        return slip and replace(slip, id=FIGURE_ID)
     channel = next((name for name in _named(criterion) if name in recording), None)
     if segment is None or channel is None:
         return None

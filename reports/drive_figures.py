@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
@@ -55,7 +56,7 @@ def drive_figure(recording: Recording, segment: Segment, criteria: Criteria | No
     known = criteria or {}
     label = channel_label(_SHAFT_TORQUE)
     end_s = min(segment.end_s, segment.step_s + TO_S)
-    start_s = max(segment.start_s, segment.step_s + FROM_S)
+    start_s = max(segment.start_s, segment.changes_from_s + FROM_S)
 
     def drawn(channel: str, name: Label, role: str, dash: str) -> Trace | None:
         ends = {"start_s": start_s, "end_s": end_s, "zero_s": segment.step_s}
@@ -78,7 +79,7 @@ def drive_figure(recording: Recording, segment: Segment, criteria: Criteria | No
         traces=(torque, *([reference] if reference is not None else [])),
         bands=tuple(bands),
         marks=tuple(marks),
-        x_range=(FROM_S, TO_S),
+        x_range=(segment.changes_from_s - segment.step_s + FROM_S, TO_S),
         caption=f"○ {'; '.join(mark.label for mark in marks)}." if marks else "",
     )
 
@@ -100,7 +101,7 @@ def _paired(segments: list[Segment]) -> list[Segment]:
 def _play(recording: Recording, segment: Segment, criteria: Criteria) -> tuple[list[Band], list[Mark]]:
     """Passages through the play as bands, and where each ends as a mark with the rate that follows."""
     try:
-        found = TimeInPlay().contacts(recording, segment)
+        found = TimeInPlay(since="first_change").contacts(recording, segment)
     except (NoValueError, HilError):
         return [], []
     bands: list[Band] = []
@@ -122,13 +123,13 @@ def _contact(recording: Recording, segment: Segment, criteria: Criteria) -> str:
     """The figures of all contacts, which stand at the first."""
     try:
         rate = _judged(criteria, segment, Clunk.name)
-        rate = Clunk().compute(recording, segment) if rate is None else rate
+        rate = Clunk(since="first_change").compute(recording, segment) if rate is None else rate
         text = f"contact, clunk {labels.quantity(rate, 'N m/s', significant=3)}"
     except (NoValueError, HilError):
         return "contact"
     try:
         energy = _judged(criteria, segment, ContactEnergy.name)
-        energy = ContactEnergy().compute(recording, segment) if energy is None else energy
+        energy = ContactEnergy(since="first_change").compute(recording, segment) if energy is None else energy
     except (NoValueError, HilError):
         return text
     return f"{text}, {labels.quantity(energy, 'J', significant=3)}"
@@ -136,7 +137,7 @@ def _contact(recording: Recording, segment: Segment, criteria: Criteria) -> str:
 
 def _jerk(recording: Recording, segment: Segment, torque: Trace, criteria: Criteria) -> Mark | None:
     try:
-        after_s, value = Jerk().largest(recording, segment)
+        after_s, value = Jerk(since=_since(criteria, segment)).largest(recording, segment)
     except (NoValueError, HilError):
         return None
     if after_s > TO_S:
@@ -145,6 +146,13 @@ def _jerk(recording: Recording, segment: Segment, torque: Trace, criteria: Crite
     shown = abs(value) if judged is None else judged
     words = f"largest jerk {labels.quantity(shown, 'm/s³', significant=3)}"
     return Mark(after_s, float(np.interp(after_s, torque.x, torque.y)), words, "third")
+
+
+def _since(criteria: Criteria, segment: Segment) -> Literal["step", "first_change"]:
+    """Where a criterion's jerk is looked for: the mark stands at the value that it judges."""
+    criterion = criteria.get(f"{segment.id}.{Jerk.name}")
+    whole = criterion is None or Jerk(since="first_change").window in criterion.definition
+    return "first_change" if whole else "step"
 
 
 def _judged(criteria: Criteria, segment: Segment, metric: str) -> float | None:

@@ -165,11 +165,12 @@ def number(value: float | None, decimals: int | None = None, significant: int = 
 
 
 def share(value: float | None, decimals: int = 1, *, digits: int = 1, signed: bool = False) -> str:
-    """A share in percent, from ten on a multiple (`hil.core.errors.wording`); a dash for None and NaN."""
+    """A share in percent (`hil.core.errors.wording`), set as numbers are here; a dash for None and NaN."""
     if value is None or math.isnan(value):
         return DASH
     text = plain_share(value, decimals, digits=digits, signed=signed)
     text = re.sub(r"e([+-]\d+)", lambda found: f" × 10{_superscript(int(found[1]))}", text)
+    text = re.sub(r"\d{5,}", lambda found: f"{int(found[0]):,}".replace(",", THIN), text)
     return text.replace(" ", THIN).replace("-", MINUS)
 
 

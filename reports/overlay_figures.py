@@ -11,6 +11,7 @@ from reports import labels, style
 from reports.channel_figures import DESCRIPTION, amplitude_spectrum, stretch_in_words
 from reports.figure import Band, Figure, Trace
 from reports.labels import Label, channel_label, channel_unit
+from reports.slip_figures import slip_figure, slip_trace
 from reports.step_figures import FIRST_SECONDS, SLOW_HZ, SPECTRUM_TO_HZ, SPECTRUM_WINDOW_S
 from reports.stretch import cut, line
 
@@ -30,6 +31,18 @@ def overlay(runs: tuple[ComparedRun, ...], segment: Segment) -> tuple[Figure, ..
     else:
         figures = [_response(runs, segment.id, "shaft_torque_nm", "whole")]
     return tuple(figure for figure in figures if figure is not None)
+
+
+def overlay_slip(
+    runs: tuple[ComparedRun, ...], segment: Segment, channel: str, upper: float | None
+) -> Figure | None:
+    """Wheel slip of every run over the time from its own step, with the limit."""
+    traces = []
+    for index, run in enumerate(runs):
+        own = _of(run, segment.id)
+        if own is not None:
+            traces.append(slip_trace(run.recording, own, channel, Label(run.name), *_role(index)))
+    return slip_figure(traces, f"{segment.id}-slip", upper, segment.id)
 
 
 def _of(run: ComparedRun, segment: str) -> Segment | None:

@@ -16,7 +16,7 @@ from reports import labels, style
 from reports.channel_figures import DESCRIPTION, amplitude_spectrum, stretch_in_words
 from reports.figure import Band, Figure, Level, Mark, Section, Trace, not_drawn
 from reports.labels import Label, channel_label, channel_unit
-from reports.members import Member, members
+from reports.members import Member, controller_of, members, road_in_words
 from reports.stretch import cut, line
 
 SPECTRUM_WINDOW_S = (4.0, 20.0)
@@ -84,8 +84,14 @@ def _text(segments: list[Segment]) -> str:
         for before, after in steps
         if before != after
     )
-    names = ", ".join(segment.id for segment in segments)
-    return (f"Step of the driving torque reference: {sizes}. " if sizes else "") + f"Segments: {names}."
+    roads = [road_in_words(segment) for segment in segments]
+    named = zip(segments, roads, strict=True)
+    names = ", ".join(f"{segment.id} ({road})" if road else segment.id for segment, road in named)
+    drivers = dict.fromkeys(filter(None, map(controller_of, segments)))
+    driven = f" Controller: {', '.join(drivers)}." if len(drivers) == 1 and len(segments) > 1 else ""
+    return (
+        f"Step of the driving torque reference: {sizes}. " if sizes else ""
+    ) + f"Segments: {names}.{driven}"
 
 
 class Overlay:
@@ -256,7 +262,11 @@ class Overlay:
             )
             if trace is not None and key not in seen:
                 seen[key] = trace
-        return list(seen.values())
+        if len(seen) == 1:
+            return list(seen.values())
+        steps = (f", {labels.nominal(a)} to {labels.nominal(b, 'N m')}" for a, b in seen)
+        named = zip(seen.values(), steps, strict=True)
+        return [replace(one, label=Label("Reference", label.symbol, step)) for one, step in named]
 
     def _peak_limits(self, traces: tuple[Trace, ...]) -> tuple[Level, ...]:
         """Limits of the peak, where they lie near enough to the lines not to flatten them."""

@@ -20,14 +20,15 @@ from hil.analysis.tuning import (
 from hil.core.recording import Recording
 from hil.core.result import RunResult, Segment
 from reports import labels
-from reports.figure import Level
+from reports.figure import Figure, Level
 from reports.front_figures import front_figures
 from reports.labels import Label, criterion_title
 from reports.origin import Origin
 from reports.outputs.tuning import verdict, worse_in_words
-from reports.overlay_figures import overlay
+from reports.overlay_figures import overlay, overlay_slip
 from reports.parts import Cell, Map, Page, Part, Table
 from test_plans.criteria import Criterion
+from test_plans.metrics import WheelSlip
 
 _ROWS = 12  # of the first screen
 _LEADS = "Least margin over all vehicles, weighted; in brackets: of the nominal model."
@@ -99,15 +100,22 @@ def _first(found: Tuning, runs: Sequence[Shown]) -> Part:
     table = Table(("criterion", "limit", "margin, start", "margin, tuned"), rows, 1)
     binding = next((one for one in ranked if one.id == found.chosen.worst.binding), ranked[0])
     segment = next((s for s in (runs[0].segments if runs else ()) if s.id == binding.segment), None)
-    figures = overlay(tuple(_compared(run, found) for run in runs), segment) if segment else ()
-    wanted = "spectrum" if "band_energy" in binding.id else "first"
-    shown = next((figure for figure in figures if figure.id.endswith(wanted)), None)
+    compared = tuple(_compared(run, found) for run in runs)
+    shown = _binding_figure(compared, binding, segment) if segment else None
     title = f"Binding criterion: {criterion_title(binding.id)}"
-    levels: tuple[Level, ...] = ()
+    levels: tuple[Level, ...] = shown.levels if shown else ()
     if binding.metric.name.startswith("peak") and binding.upper is not None and not binding.below:
         levels = (Level(binding.upper, f"Limit {_limit(binding)[2:]}, {binding.segment}"),)
     drawn = (replace(shown, title=Label(title), wide=True, levels=levels),) if shown else ()
     return Part("summary", "Criteria by margin", "", (table,), figures=drawn)
+
+
+def _binding_figure(compared: tuple[ComparedRun, ...], binding: Criterion, segment: Segment) -> Figure | None:
+    """What the binding criterion judges, of every run."""
+    if isinstance(binding.metric, WheelSlip):
+        return overlay_slip(compared, segment, binding.metric.channel, binding.upper)
+    wanted = "spectrum" if "band_energy" in binding.id else "first"
+    return next((one for one in overlay(compared, segment) if one.id.endswith(wanted)), None)
 
 
 def _in_titles(text: str, found: Tuning) -> str:

@@ -23,7 +23,8 @@ class PlannedSegment:
     """A named stretch of samples, before it has a place in a recording.
 
     `step_s` and `end_s` are seconds from the first sample of the stretch; `reference_before` and
-    `reference_after` are values of `quantity` in N m, before and after the step, which takes `rise_s`.
+    `reference_after` are values of `quantity` in N m, before and after the step, which takes `rise_s`. Where
+    the torque changes before the step, as in stairs, `first_change_s` is when it first does.
     """
 
     id: str
@@ -34,6 +35,7 @@ class PlannedSegment:
     quantity: Quantity = "driving_torque"
     end_s: float = math.inf
     rise_s: float = 0.0
+    first_change_s: float | None = None
 
 
 #: What an analysis step does: from the run's recording so far (its segments in the attachment `run.json`) and

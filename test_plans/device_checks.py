@@ -17,9 +17,9 @@ from test_plans.metrics import (
     Arrival,
     Holding,
     Metric,
-    ResponseTime,
     StabilityOscillation,
     StabilityTorqueRequest,
+    TimeToTolerance,
 )
 
 _TITLES = {
@@ -97,7 +97,7 @@ class DeviceChecks(Strict):
         after_s = segment.end_s - segment.step_s
         miss = min(of_step * (self.arrival_percent or 10.0), _LARGEST_MISS_PERCENT)
         if self.response_s is not None:
-            metric: Metric = ResponseTime(channel=channel, share_percent=100.0 - miss)
+            metric: Metric = TimeToTolerance(channel=channel, share_percent=100.0 - miss)
             longest_s = min(self.response_s + segment.rise_s, max(_RESPONSE_SHARE * after_s, segment.rise_s))
             yield _criterion(segment, "response_time", metric, upper=longest_s)
         if self.arrival_percent is not None:

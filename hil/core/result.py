@@ -96,8 +96,12 @@ class Segment(_Frozen):
     start_s: float
     step_s: float
     end_s: float
+    first_change_s: float | None = Field(
+        None, description="when the torque first changes, where that is before the step; null: with the step"
+    )
     complete: bool = True
     controller: str = ""
+    controller_name: str = Field("", description="in the controller's file; '' in earlier recordings")
     initial_speed_km_h: float = 0.0
     load: Literal["vehicle", "speed"] = Field(
         "vehicle", description="load by the dynos: simulate the vehicle, or hold a speed"
@@ -123,6 +127,11 @@ class Segment(_Frozen):
     wheel_orders: tuple[float, ...] = Field(
         (), description="multiples of the wheel's revolutions that its bench file declares as excited"
     )
+
+    @property
+    def changes_from_s(self) -> float:
+        """When the requested torque first changes: at the step, or at the first of several."""
+        return self.step_s if self.first_change_s is None else self.first_change_s
 
     @property
     def slippery(self) -> bool:

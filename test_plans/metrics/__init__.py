@@ -28,6 +28,7 @@ from test_plans.metrics.response_time import (
     Holding,
     ResponseTime,
     ResponseTimeShaftTorque,
+    TimeToTolerance,
 )
 from test_plans.metrics.ride_comfort import RideComfort, VibrationDose
 from test_plans.metrics.settling_time import Ripple, SettlingShaftTorque, SettlingTime, SettlingToReference
@@ -115,6 +116,7 @@ __all__ = [
     "StabilityOscillation",
     "StabilityTorqueRequest",
     "TimeInPlay",
+    "TimeToTolerance",
     "Trough",
     "VibrationDose",
     "WheelSlip",

@@ -59,16 +59,25 @@ class Jerk(WindowMetric):
     @property
     def definition(self) -> str:
         """What is differentiated."""
-        source = (
-            "second derivative of the vehicle's speed"
-            if self.mass_kg is None
-            else f"derivative of the wheel force over {self.mass_kg:g} kg, T_s / (r m)"
+        low_pass = (
+            f"low-pass filtered at {self.low_pass_hz:g} Hz (Butterworth, order {ORDER}, forward and backward)"
         )
+        if self.mass_kg is None:
+            source = "second derivative of the vehicle's speed"
+            rule = (
+                f"The speed is differenced from sample to sample, {low_pass}, and differenced again: the "
+                "value at a sample is the second difference over three, (v[k+1] - 2 v[k] + v[k-1]) / T², of "
+                "the filtered speed."
+            )
+        else:
+            source = f"derivative of the wheel force over {self.mass_kg:g} kg, T_s / (r m)"
+            rule = (
+                f"The torque is {low_pass}; the value at a sample is the difference of its two neighbours "
+                "over 2 T."
+            )
         return (
-            f"Largest magnitude of the {source} ({self.subject}), {self.window}. Low-pass filtered at "
-            f"{self.low_pass_hz:g} Hz (Butterworth, order {ORDER}, forward and backward); central "
-            "differences of neighbouring samples. The filter's last period before the segment's end is left "
-            "out."
+            f"Largest magnitude of the {source} ({self.subject}), {self.window}. {rule} The filter's last "
+            "period before the segment's end is left out."
         )
 
     def compute(self, recording: Recording, segment: Segment) -> float:

@@ -20,6 +20,7 @@ class Overshoot(Extreme):
 
     name: ClassVar[str] = "overshoot"
     never_negative: ClassVar[bool] = True
+    follows_step: ClassVar[bool] = True
     reference: float | None = Field(
         default=None,
         description="reference value of the channel, in its unit; default: the step's value after",

@@ -15,12 +15,17 @@ from test_plans.metrics._window import WindowMetric
 
 
 class Extreme(WindowMetric):
-    """An extreme of the window; the sample at the step itself, which is the value before it, is left out."""
+    """An extreme of the window; the sample at its step, which is the value before it, is left out."""
+
+    @property
+    def _at(self) -> str:
+        """What the left out sample lies at, in words."""
+        return "the step" if self.since == "step" else "that change"
 
     def extremes(self, recording: Recording, segment: Segment) -> tuple[float, float]:
         """Smallest and largest value."""
         time, values = self.samples(recording, segment)
-        inside = time > segment.step_s + 0.5 * recording.sample_time_s
+        inside = time > self.origin_s(segment) + 0.5 * recording.sample_time_s
         inside |= self.from_s > 0 or not np.any(inside)
         return float(np.min(values[inside])), float(np.max(values[inside]))
 
@@ -29,6 +34,7 @@ class Peak(Extreme):
     """Value of a channel that lies farthest in the step's direction."""
 
     name: ClassVar[str] = "peak"
+    follows_step: ClassVar[bool] = True
 
     @property
     def definition(self) -> str:
@@ -69,6 +75,7 @@ class Trough(Extreme):
     """Value of a channel that lies farthest against the step's direction."""
 
     name: ClassVar[str] = "trough"
+    follows_step: ClassVar[bool] = True
 
     @property
     def definition(self) -> str:
@@ -110,7 +117,7 @@ class Magnitude(Extreme):
     @property
     def definition(self) -> str:
         """The largest absolute value."""
-        return f"Largest absolute value of {self.subject} {self.window} (the sample at the step left out)."
+        return f"Largest absolute value of {self.subject} {self.window} (the sample at {self._at} left out)."
 
     def compute(self, recording: Recording, segment: Segment) -> float:
         """The larger of both extremes without its sign."""

@@ -62,7 +62,7 @@ class _InPlay(WindowMetric):
         before, after = segment.reference_before, segment.reference_after
         if before == after and self.firm_nm is None:
             return f"a {segment.kind} has no step: give 'firm_nm', or choose another metric"
-        if before != after and before * after > 0:
+        if self.since == "step" and before != after and before * after > 0:
             return f"the torque keeps its sign, {before:g} to {after:g} N m: no flank is left"
         return super().objection(segment)
 
@@ -87,7 +87,7 @@ class _Passage(_InPlay):
     def objection(self, segment: PlannedSegment) -> str:
         """Also where the torque begins or ends at zero: it comes from no flank, or goes to none."""
         before, after = segment.reference_before, segment.reference_after
-        if before != after and before * after == 0:
+        if self.since == "step" and before != after and before * after == 0:
             return f"the torque goes from {before:g} to {after:g} N m: it does not pass from flank to flank"
         return super().objection(segment)
 

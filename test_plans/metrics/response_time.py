@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
+from hil.core.channels import CHANNELS
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import Array, PlannedSegment
@@ -21,11 +22,15 @@ from test_plans.metrics._window import WindowMetric
 
 _WHEEL, _MOTOR = "wheel_speed_rad_s", "motor_torque_nm"
 _SETS_IN = 10.0  # %
+_BY_ROUNDING = 0.5  # of a sample: so far a line begins too soon by the place of the samples alone
+_ROUNDED_S = 2e-6  # times of a segment are rounded to 1e-6 s
 _SHORT_MEAN_S = 0.25  # vibration from 8 Hz on has no part in it
 
 
 class _Following(WindowMetric):
     """A metric of how a channel follows the step's own quantity."""
+
+    follows_step: ClassVar[bool] = True
 
     def objection(self, segment: PlannedSegment) -> str:
         """No step, or one of another torque than the channel's."""
@@ -34,6 +39,10 @@ class _Following(WindowMetric):
             or _samples.not_comparable(segment, self.channel)
             or super().objection(segment)
         )
+
+
+class AlreadyThereError(NoValueError):
+    """What is timed had happened before the window began."""
 
 
 class ResponseTime(_Following):
@@ -53,11 +62,11 @@ class ResponseTime(_Following):
         """The first crossing."""
         return (
             f"Time from the step until {self.subject} first reaches {self.share_percent:g} % of the step's "
-            f"size, linear between samples, {self.window}."
+            f"size, linear between samples, {self.window}. No value where it is there as the window begins."
         )
 
     def compute(self, recording: Recording, segment: Segment) -> float:
-        """Seconds; NotReachedError where the channel does not get there."""
+        """Seconds; NotReachedError where the channel does not get there, NoValueError where it was before."""
         size = _signed_size(segment)
         refuse_reversal(recording, segment)
         time, values = self.samples(recording, segment)
@@ -71,9 +80,32 @@ class ResponseTime(_Following):
             )
         first = int(reached[0])
         if first == 0:
-            return max(0.0, float(time[0] - segment.step_s))
+            raise AlreadyThereError(
+                f"{self.channel} is at {values[0]:.4g} {CHANNELS[self.channel].unit} as the window begins, "
+                f"beyond {self.share_percent:g} % of the step already: what it carries beside (orders of the "
+                "wheel, noise, an earlier response) hides this one"
+            )
         part = (share - progress[first - 1]) / (progress[first] - progress[first - 1])
         return float(time[first - 1] + part * (time[first] - time[first - 1]) - segment.step_s)
+
+
+class TimeToTolerance(ResponseTime):
+    """The same as a check that a response arrives in time: one that is there at the step has."""
+
+    @property
+    def definition(self) -> str:
+        """With what is there at the step."""
+        return (
+            f"Time from the step until {self.subject} first reaches {self.share_percent:g} % of the step's "
+            f"size, linear between samples, {self.window}; 0 where it is there at the step."
+        )
+
+    def compute(self, recording: Recording, segment: Segment) -> float:
+        """Seconds, 0 where it is there at the step; NotReachedError where the channel does not get there."""
+        try:
+            return super().compute(recording, segment)
+        except AlreadyThereError:
+            return 0.0
 
 
 class Delay(ResponseTime):
@@ -91,15 +123,23 @@ class Delay(ResponseTime):
         return (
             f"Time from the step until {self.subject} sets in: where a straight line through its first "
             f"crossings of {_SETS_IN:g} % and {self.share_percent:g} % of the step's size begins at 0 %, "
-            f"{self.window}."
+            f"{self.window}. No value where that is before the step."
         )
 
     def compute(self, recording: Recording, segment: Segment) -> float:
-        """Seconds, not below 0; NotReachedError where the channel does not get there."""
+        """Seconds; NotReachedError where the channel does not get there, NoValueError below 0."""
         later = super().compute(recording, segment)
         first = self.model_copy(update={"share_percent": _SETS_IN})
         sooner = super(Delay, first).compute(recording, segment)
-        return max(0.0, sooner - (later - sooner) * _SETS_IN / (self.share_percent - _SETS_IN))
+        found = sooner - (later - sooner) * _SETS_IN / (self.share_percent - _SETS_IN)
+        if found < -_BY_ROUNDING * recording.sample_time_s:
+            raise NoValueError(
+                f"the line through the first crossings of {_SETS_IN:g} % ({1000 * sooner:.3g} ms) and "
+                f"{self.share_percent:g} % ({1000 * later:.3g} ms) begins {-1000 * found:.3g} ms before the "
+                f"step: {self.channel} carries something beside the response (orders of the wheel, noise), "
+                "or bends too much for a line"
+            )
+        return max(0.0, found)
 
 
 class ResponseTimeShaftTorque(ResponseTime):
@@ -129,8 +169,12 @@ class Arrival(_Following):
             "of the step's size: positive beyond it, negative short of it."
         )
 
+    def objection(self, segment: PlannedSegment) -> str:
+        """Also a window that is shorter than the mean."""
+        return _no_room(self.planned_length_s(segment), self.mean_s) or super().objection(segment)
+
     def compute(self, recording: Recording, segment: Segment) -> float:
-        """Percent of the step, in its direction."""
+        """Percent of the step, in its direction; NoValueError in a window that is shorter than the mean."""
         size = _signed_size(segment)
         refuse_reversal(recording, segment)
         return 100 * (self._mean(recording, segment, self.channel) - segment.reference_after) / size
@@ -154,6 +198,9 @@ class Arrival(_Following):
     def _mean(self, recording: Recording, segment: Segment, channel: str) -> float:
         """Of the end of the window."""
         start_s, end_s = self.bounds_s(recording, segment)
+        short = _no_room(end_s - start_s, self.mean_s)
+        if short:
+            raise NoValueError(short)
         time, values = cut(recording, segment, channel, start_s, end_s)
         first = int(np.searchsorted(time, time[-1] - self.mean_s, "right"))
         if segment.wheel_orders and _WHEEL in recording:
@@ -163,6 +210,13 @@ class Arrival(_Following):
             if whole >= 1:
                 first += int(np.searchsorted(np.abs(periods), abs(periods[-1]) - whole))
         return float(np.mean(values[first:]))
+
+
+def _no_room(length_s: float, mean_s: float) -> str:
+    """Why a window has no mean; '' where it has."""
+    if length_s >= mean_s - _ROUNDED_S:
+        return ""
+    return f"the window is {length_s:.3g} s long, the mean alone takes {mean_s:g} s: give 'mean_s'"
 
 
 def _integral(time: Array, values: Array) -> Array:

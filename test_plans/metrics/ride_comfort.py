@@ -86,9 +86,9 @@ class VibrationDose(WindowMetric):
         return (
             f"Vibration dose value of ISO 2631-1:1997 (6.3.2): {self.subject} {self.window}, differentiated "
             "and weighted by W_d (horizontal, seated person) as a filter in time; the fourth root of the "
-            "integral of the fourth power. The acceleration before the step is taken as constant. The speed "
-            "is that of the dyno controller's vehicle model, without seat and body: to compare controllers "
-            "by."
+            f"integral of the fourth power. The acceleration before {self._origin} is taken as constant. "
+            "The speed is that of the dyno controller's vehicle model, without seat and body: to compare "
+            "controllers by."
         )
 
     def compute(self, recording: Recording, segment: Segment) -> float:
@@ -99,7 +99,7 @@ class VibrationDose(WindowMetric):
         if 1 / spacing < _LEAST_RATE_HZ - 1e-6:
             raise NoValueError(f"{1 / spacing:.4g} samples a second do not reach {_HIGHEST_HZ:g} Hz")
         grid: Array = spacing * np.arange(len(even), dtype=float)
-        before = even[grid <= segment.step_s - time[0] + 0.5 * spacing]
+        before = even[grid <= self.origin_s(segment) - time[0] + 0.5 * spacing]
         weighted: Array = even - _line_before(before, spacing, grid)
         for b, a in weighting_sections(spacing):
             _filter(weighted, np.array(b), np.array(a))

@@ -32,6 +32,7 @@ class SettlingTime(WindowMetric):
 
     name: ClassVar[str] = "settling_time"
     never_negative: ClassVar[bool] = True
+    follows_step: ClassVar[bool] = True
     band_percent: float = Field(
         default=5.0, gt=0, le=100, description="half width of the band, % of the step's size"
     )
@@ -106,7 +107,7 @@ class SettlingTime(WindowMetric):
             )
             if objection:
                 return objection
-        length = (segment.end_s - segment.step_s if self.to_s is None else self.to_s) - self.from_s
+        length = self.planned_length_s(segment)
         if length <= self.mean_s:
             return f"the window is {length:g} s long, the mean alone takes {self.mean_s:g} s"
         return super().objection(segment)
@@ -179,6 +180,13 @@ class Ripple(WindowMetric):
             f"Half the distance between the largest and the smallest value of {self.subject} in the last "
             f"{self.mean_s:g} s, {self.window}."
         )
+
+    def objection(self, segment: PlannedSegment) -> str:
+        """A window that is shorter than the stretch."""
+        length = self.planned_length_s(segment)
+        if length < self.mean_s - 1e-9:
+            return f"the window is {length:g} s long, the stretch takes {self.mean_s:g} s: give 'mean_s'"
+        return super().objection(segment)
 
     def compute(self, recording: Recording, segment: Segment) -> float:
         """In the channel's unit."""

@@ -80,6 +80,7 @@ class StabilityOscillation(WindowMetric):
 
     name: ClassVar[str] = "stability_oscillation"
     never_negative: ClassVar[bool] = True
+    follows_step: ClassVar[bool] = True
     channel: ChannelName = "shaft_torque_nm"
 
     @property

@@ -56,6 +56,11 @@ class Excitation(Step):
         return 0.0
 
     @property
+    def first_change_s(self) -> float | None:
+        """Offset of the first change of torque, where that is not the step's; else None."""
+        return None
+
+    @property
     def rise_s(self) -> float:
         """How long the step takes."""
         return 0.0
@@ -73,7 +78,15 @@ class Excitation(Step):
         before, after = self.references_nm
         return tuple(
             PlannedSegment(
-                name, self.kind, self.step_s, before, after, self.quantity, self.play_s, self.rise_s
+                name,
+                self.kind,
+                self.step_s,
+                before,
+                after,
+                self.quantity,
+                self.play_s,
+                self.rise_s,
+                self.first_change_s,
             )
             for name in names
         )

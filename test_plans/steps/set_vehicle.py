@@ -24,10 +24,10 @@ class SetVehicle(Step):
     f2_ns2_m2: float | None = Field(None, ge=0, le=100, description="N s²/m²")
     slip_percent: float | None = Field(None, ge=0, le=50, description="%, from 0 to 50")
     friction: float | None = Field(
-        None, ge=0.001, le=10, description="µ of the road, a share of what the tyres hold when it is dry"
+        None, ge=0.001, le=1, description="of the road, as a share of a dry one's: 1 is dry, 0.05 ice"
     )
-    friction_left: float | None = Field(None, ge=0.001, le=10, description="likewise under the left tyre")
-    friction_right: float | None = Field(None, ge=0.001, le=10, description="likewise under the right tyre")
+    friction_left: float | None = Field(None, ge=0.001, le=1, description="likewise under the left tyre")
+    friction_right: float | None = Field(None, ge=0.001, le=1, description="likewise under the right tyre")
 
     @model_validator(mode="after")
     def _says_something(self) -> Self:

@@ -13,7 +13,10 @@ from test_plans.steps._step import Duration, Torque
 
 
 class Stairs(Excitation):
-    """Several levels of torque; metrics count from the last step and compare its two levels."""
+    """Several levels of torque; the step is the change to the last level.
+
+    Metrics count from that step and compare its two levels; with `since: first_change` they judge them all.
+    """
 
     kind: ClassVar[str] = "stairs"
     levels_nm: tuple[Torque, ...] = Field(
@@ -42,6 +45,14 @@ class Stairs(Excitation):
     def step_s(self) -> float:
         """When the last level begins."""
         return sum(self._times_s[:-1])
+
+    @property
+    def first_change_s(self) -> float | None:
+        """When the first level ends that is followed by another torque; None where that is the step's."""
+        first = self.levels_nm[0]
+        changes = (place for place, level in enumerate(self.levels_nm) if level != first)
+        place = next(changes, len(self.levels_nm) - 1)
+        return None if place == len(self.levels_nm) - 1 else sum(self._times_s[:place])
 
     @property
     def references_nm(self) -> tuple[float, float]:

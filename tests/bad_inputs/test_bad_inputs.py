@@ -2,13 +2,14 @@
 
 import pytest
 
+from test_plans import library_plans
 from tests.bad_inputs.__main__ import AT_ONCE, try_all
 from tests.bad_inputs.all_cases import all_cases, quick_cases
 from tests.bad_inputs.api_bounds import try_routes
 from tests.bad_inputs.bound_cases import bound_cases
 from tests.bad_inputs.case import FILES, REFUSED, SIGNALS, Case, Outcome
 from tests.bad_inputs.judging import HALF_WRITTEN, HANG, TRACEBACK, UNCLEAR, WRONG_CODE, faults_of
-from tests.bad_inputs.page import failures_of, page_of
+from tests.bad_inputs.page import PAGE, failures_of, page_of
 
 CASE = Case("export", FILES, "a case", ("--json",), (REFUSED,))
 GOOD = Outcome(2, "", "error: x: is missing\n  give another\n", (), (), ())
@@ -40,6 +41,17 @@ def test_what_is_wrong_with_an_outcome_is_seen(changes, fault):
 def test_the_page_merges_what_says_the_same():
     page = page_of([(CASE, GOOD), (Case("export", FILES, "another", (), (REFUSED,)), GOOD)])
     assert "| a case; another | 2 | error: x: is missing / give another |" in page
+
+
+def test_the_page_knows_the_plans_that_there_are():
+    """A page that was made before the newest plan lists fewer."""
+    shipped = ", ".join(library_plans())
+    rows = [row for row in PAGE.read_text("utf-8").splitlines() if "a built-in plan" in row]
+    assert rows
+    for row in rows:
+        listed = row.rpartition("known: ")[2].partition("…")[0].partition(";")[0].rstrip("| ")
+        assert len(listed) > 20
+        assert shipped.startswith(listed)
 
 
 @pytest.mark.slow

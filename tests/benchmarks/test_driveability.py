@@ -1,4 +1,4 @@
-"""The limits of the plan `driveability` lie where they are said to lie beyond what the fitted model does."""
+"""Limits of `driveability` and `abs_release` lie where they are said to, beyond the fitted model's values."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from benchmarks.driveability import SHARES, Derived, derived, manoeuvre, misplaced
+from benchmarks.driveability import PLANS, SHARES, Derived, derived, manoeuvre, misplaced
 from test_plans import load_plan
 from test_plans.loading import LIBRARY
 
@@ -18,7 +18,7 @@ CAUTION = 8.5  # m/s^1.75 a day, where annex B of ISO 2631-1 begins its health c
 
 @pytest.fixture(scope="module")
 def found() -> list[Derived]:
-    return derived()
+    return [one for name in PLANS for one in derived(name)]
 
 
 @pytest.mark.slow
@@ -74,3 +74,24 @@ def test_the_plan_says_what_it_leaves_out() -> None:
     text = (LIBRARY / "driveability.yaml").read_text("utf-8")
     for word in ("low friction", "split friction", "anti-lock", "kerbs"):
         assert word in text
+
+
+def test_a_modulation_is_judged_from_its_first_release_on() -> None:
+    """The step of stairs is their last level: alone it would leave out two releases of three."""
+    plan = load_plan("abs_release")
+    for name in ("modulation_20", "modulation_50", "modulation_80"):
+        since = {
+            one.metric.name: getattr(one.metric, "since", "") for one in plan.criteria if one.segment == name
+        }
+        assert [metric for metric, begin in since.items() if begin == "first_change"] == [
+            "magnitude",
+            "jerk",
+            "vibration_dose",
+        ]
+    for one in load_plan("driveability").criteria:
+        if manoeuvre(one.segment) == "change_of_mind" and one.metric.name in (
+            "jerk",
+            "time_in_play",
+            "clunk",
+        ):
+            assert getattr(one.metric, "since", "") == "first_change", one.id

@@ -61,7 +61,7 @@ def test_words_for_messages() -> None:
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(376.0, "33.3\u202f%"), (36255.0, "−63\u202ftimes"), (5e9, "<\u202f−1000\u202ftimes")],
+    [(376.0, "33.3\u202f%"), (36255.0, "−6330\u202f%"), (5e9, "<\u202f−100\u202f000\u202f%")],
 )
 def test_a_margin_far_beyond_its_limit_is_a_multiple(result: RunResult, value: float, text: str) -> None:
     assert row(result, value=value, upper=564.0, verdict="fail").margin == text

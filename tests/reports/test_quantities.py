@@ -55,7 +55,7 @@ def test_nothing_is_quite_certain(share, said):
     ("share", "text"),
     [
         (0.123, "12.3\u202f%"),
-        (-63.279, "−63\u202ftimes"),
+        (-63.279, "−6330\u202f%"),
         (-5.3e-7, "−5\u202f×\u202f10⁻⁵\u202f%"),
         (None, "–"),
         (math.nan, "–"),

@@ -15,7 +15,7 @@ import numpy as np
 from hil.analysis.control_design import Margins
 from hil.core.recording import Recording
 from hil.core.result import Segment
-from test_plans.metrics import Arrival, NotReachedError, NoValueError, ResponseTime
+from test_plans.metrics import Arrival, NotReachedError, NoValueError, TimeToTolerance
 
 #: Margins of the plan's own criteria: what passes is not traded.
 CRITERIA = "criteria"
@@ -132,7 +132,7 @@ def kept_of_run(recording: Recording, segments: Iterable[Segment]) -> dict[Kept,
             continue
         mean_s = min(_LONGEST_MEAN_S, _MEAN_SHARE * (segment.end_s - segment.step_s))
         try:
-            late_s = ResponseTime(channel=_TORQUE).compute(recording, segment)
+            late_s = TimeToTolerance(channel=_TORQUE).compute(recording, segment)
         except NotReachedError:
             late_s = np.inf
         except NoValueError:

@@ -133,6 +133,22 @@ def refuse_missing_tables(controller: Controller, names: Iterable[str], where: s
             )
 
 
+def refuse_wide_margin(controller: Controller, free: Mapping[str, tuple[float, float]], where: str) -> None:
+    """Refuse a free landing margin that may become wider than the gap: no controller file may hold it.
+
+    Raises:
+        BadInputError: names the range and the gap.
+    """
+    most = free.get("landing_margin_rad", (0.0, 0.0))[1]
+    if controller.play is not None and most > 2.0 * controller.play.half_gap_rad:
+        raise BadInputError(
+            f"landing_margin_rad: up to {most:g} it would be wider than the gap of controller "
+            f"'{controller.name}', 2 x half_gap_rad = {2.0 * controller.play.half_gap_rad:g}",
+            where=where,
+            fix="lower the end of its range",
+        )
+
+
 def with_values(controller: Controller, values: Mapping[str, float], name: str = "") -> Controller:
     """A controller with other numbers; a free lead takes the place of a notch, and the other way round.
 

@@ -9,7 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.tuning._kept import CRITERIA, KEPT, Worse, worse_of
-from hil.analysis.tuning._parameters import PAPER_LEAD, PAPER_NOTCH, Space, refuse_missing_tables, values_of
+from hil.analysis.tuning._parameters import (
+    PAPER_LEAD,
+    PAPER_NOTCH,
+    Space,
+    refuse_missing_tables,
+    refuse_wide_margin,
+    values_of,
+)
 from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._search import Effort, Search
 from hil.analysis.tuning._trial import Trial, Tried
@@ -158,6 +165,7 @@ def tune(
     """
     space = Space(trial.free.free)
     refuse_missing_tables(trial.start, space.names, trial.free.where)
+    refuse_wide_margin(trial.start, trial.free.free, trial.free.where)
     refuse_start(trial)
     with Pool(trial, processes) as pool:
         search = Search(

@@ -71,8 +71,8 @@ HalfGap = Annotated[float, Within(0.0, 1.0, "radians at the wheels")]
 TwistSpeed = Annotated[float, Within(1e-2, 1e3, "radians per second at the wheels")]
 Factor = Annotated[float, Within(0.0, 100.0, "a factor of a gain")]
 Share = Annotated[float, Within(0.0, 1.0, "a share")]
-Stiffness = Annotated[float, Within(1e-3, 1e9, _OTHER_UNIT)]
-Damping = Annotated[float, Within(0.0, 1e9, _OTHER_UNIT)]
+Stiffness = Annotated[float, Within(1.0, 1e6, "N m/rad at the wheels; check the unit")]
+Damping = Annotated[float, Within(0.0, 1e5, "N m s/rad at the wheels; check the unit")]
 DeadTime = Annotated[
     float,
     Within(

@@ -83,6 +83,17 @@ class Play(_Table):
     vehicle_inertia_kg_m2: Inertia = Field(description="of the vehicle without the wheels, wheel side")
     dead_time_s: DeadTime = Field(0.0, description="of the torque path")
 
+    @model_validator(mode="after")
+    def _margin_within_the_gap(self) -> Play:
+        gap_rad = 2.0 * self.half_gap_rad
+        if self.landing_margin_rad > gap_rad * (1.0 + 1e-9):
+            raise ValueError(
+                f"landing_margin_rad = {self.landing_margin_rad:g} is wider than the gap itself, which is "
+                f"2 x half_gap_rad = {gap_rad:g}: the play would never be crossed faster than the shafts are "
+                "wound"
+            )
+        return self
+
 
 class Schedule(_Table):
     """Factors of gains over the vehicle's speed, linear between points and constant beyond them."""

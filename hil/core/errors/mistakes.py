@@ -255,9 +255,18 @@ def needed(mistake: Mapping[str, Any]) -> str:
         return "must not be empty" if least == 1 else f"must have at least {least} characters"
     if kind == "string_too_long":
         return f"must have at most {context['max_length']} characters"
+    if kind in ("too_short", "too_long"):
+        least, most = context.get("min_length"), context.get("max_length")
+        bound = f"at most {most}" if least is None else f"at least {least}"
+        one = 1 in (least, most)
+        return f"must have {bound} {'entry' if one else 'entries'}, not {_count(context['actual_length'])}"
     text = str(mistake["msg"]).removeprefix("Value error, ").removeprefix("Assertion failed, ")
     text = f"{text[:1].lower()}{text[1:]}"
     return text.replace("input should", "must", 1)
+
+
+def _count(length: object) -> str:
+    return "none" if length == 0 else str(length)  # pydantic does not count an iterator to its end
 
 
 def _number(value: object) -> str:

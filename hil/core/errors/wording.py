@@ -16,7 +16,7 @@ from collections.abc import Iterable, Sequence
 
 from hil.core.errors import BadInputError
 
-#: A share above it is a multiple: 1000 % has too many digits for what it means.
+#: A share above it has no decimals, and three digits: more mean nothing.
 MOST_SHARE = 10.0
 #: A multiple above it says that there was nothing to compare with, and no more.
 MOST_TIMES = 1000.0
@@ -25,7 +25,7 @@ LEAST_TIMES = 1e-3
 
 
 def share(value: float, decimals: int = 1, *, digits: int = 1, signed: bool = False) -> str:
-    """A share in percent, "12.3 %"; from ten on as a multiple, "63 times", at most "> 1000 times".
+    """A share in percent, "12.3 %"; from ten on with three digits, "6330 %", at most "> 100000 %".
 
     What is not zero is never written as zero: "0.004 %", "-5e-05 %".
 
@@ -39,7 +39,7 @@ def share(value: float, decimals: int = 1, *, digits: int = 1, signed: bool = Fa
         return "-"
     plus = "+" if signed and value > 0 else ""
     if abs(value) > MOST_SHARE:
-        return f"{plus if abs(value) <= MOST_TIMES else ''}{_times(value)} times"
+        return f"{plus if abs(value) <= MOST_TIMES else ''}{_large_percent(value)} %"
     percent = 100.0 * value
     if not percent:
         return f"{0.0:.{decimals}f} %"  # no negative zero
@@ -78,11 +78,11 @@ def quantity(value: float, unit: str, digits: int = 3) -> str:
     return f"{text} {unit}".rstrip()
 
 
-def _times(value: float) -> str:
-    """Two digits of a multiple between ten and a hundred, three of a larger one."""
-    if value > MOST_TIMES:
-        return f"> {MOST_TIMES:g}"
-    return f"< -{MOST_TIMES:g}" if value < -MOST_TIMES else f"{value:.0f}"
+def _large_percent(value: float) -> str:
+    """Three digits of a share above ten, in percent; what is beyond a thousand says no more than that."""
+    if abs(value) > MOST_TIMES:
+        return f"{'>' if value > 0 else '<'} {math.copysign(100.0 * MOST_TIMES, value):.0f}"
+    return f"{float(f'{100.0 * value:.3g}'):.0f}"
 
 
 LONGEST = 80

@@ -36,7 +36,9 @@ class Segments:
         return tuple(
             segment.model_copy(
                 update={
-                    key: round(getattr(segment, key) + later_s, 6) for key in ("start_s", "step_s", "end_s")
+                    key: round(getattr(segment, key) + later_s, 6)
+                    for key in ("start_s", "step_s", "end_s", "first_change_s")
+                    if getattr(segment, key) is not None
                 }
             )
             for segment in self.segments

@@ -286,8 +286,12 @@ class BenchConductor:
                 start_s=start_s,
                 step_s=round(start_s + planned.step_s, 6),
                 end_s=round(end_s, 6),
+                first_change_s=(
+                    None if planned.first_change_s is None else round(start_s + planned.first_change_s, 6)
+                ),
                 complete=False,
                 controller=driven.stabilization if driven else "",
+                controller_name=driven.name if driven else "",
                 load=self._load,
                 initial_speed_km_h=round(self._speed_m_s * 3.6, 6),
                 reference_before=planned.reference_before,

@@ -25,7 +25,7 @@ def test_margins_in_the_table_of_a_run_have_digits_that_mean_something() -> None
     far = (_result("a.peak", 376.0, 564.0), _result("b.peak", 36255.0, 564.0), _result("c.peak", 20.0, 1.0))
     print_criteria(page, far)
     text = page.file.getvalue()  # type: ignore[attr-defined]
-    for said in (" 33.3 % ", " -63 times ", " -19 times "):
+    for said in (" 33.3 % ", " -6330 % ", " -1900 % "):
         assert said in text
     assert "%%" not in text
     assert "6328" not in text

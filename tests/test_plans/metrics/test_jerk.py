@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from pydantic import ValidationError
+from scipy import signal
 
 from test_plans.metrics import Jerk, NoValueError
 from tests.test_plans.signals import SAMPLE_TIME_S, STEP, recording_of, time_axis
@@ -78,3 +79,19 @@ def test_the_last_samples_of_a_segment_do_not_decide() -> None:
     known = Jerk().compute(recording_of(TIME, vehicle_speed_m_s=speed), STEP)
     bent = speed + 0.01 * (STEP.end_s - 4.5 * SAMPLE_TIME_S < TIME)  # 67 m/s³, were they to count
     assert Jerk().compute(recording_of(TIME, vehicle_speed_m_s=bent), STEP) == pytest.approx(known, rel=1e-6)
+
+
+def test_the_definition_is_the_rule_and_not_two_central_differences() -> None:
+    """By the definition's words alone: differences, the filter, differences."""
+    time = time_axis()
+    rng = np.random.default_rng(3)
+    speed = np.cumsum(np.cumsum(rng.normal(size=len(time)))) * 1e-6
+    words = Jerk().definition
+    assert "differenced from sample to sample, low-pass filtered at 25 Hz" in words
+    assert "(v[k+1] - 2 v[k] + v[k-1]) / T²" in words
+    assert "central" not in words
+    acceleration = signal.filtfilt(*signal.butter(2, 25.0, fs=1000.0), np.diff(speed) / 1e-3)
+    by_hand = np.diff(acceleration) / 1e-3
+    first, last = round(STEP.step_s / 1e-3) - 1, round((STEP.end_s - 1 / 25) / 1e-3) - 1
+    found = Jerk().compute(recording_of(time, vehicle_speed_m_s=speed), STEP)
+    assert found == pytest.approx(np.max(np.abs(by_hand[first : last + 1])), rel=1e-3)

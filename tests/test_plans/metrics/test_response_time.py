@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from test_plans.conductor import PlannedSegment
 from test_plans.metrics import (
     ArrivalShaftTorque,
     Delay,
@@ -13,6 +14,8 @@ from test_plans.metrics import (
     OvershootPercentShaftTorque,
     PeakShaftTorque,
     ResponseTimeShaftTorque,
+    Ripple,
+    TimeToTolerance,
     Trough,
 )
 from tests.test_plans.signals import STEP, recording_of, time_axis
@@ -45,6 +48,19 @@ def test_what_never_gets_there_says_how_far_it_got() -> None:
 def test_arrival_is_the_distance_of_the_last_mean(after: float, percent: float) -> None:
     recording = recording_of(TIME, shaft_torque_nm=first_order(0.0, after))
     assert ArrivalShaftTorque().compute(recording, STEP) == pytest.approx(percent, abs=1e-3)
+
+
+def test_a_window_shorter_than_the_mean_has_no_arrival() -> None:
+    recording = recording_of(TIME, shaft_torque_nm=first_order(0.0, 326.0))
+    short = ArrivalShaftTorque(to_s=0.3)
+    with pytest.raises(NoValueError, match=r"window is 0\.3 s long, the mean alone takes 2 s: give 'mean_s'"):
+        short.compute(recording, STEP)
+    planned = PlannedSegment("up", "step", 1.0, 0.0, 326.0, end_s=5.0)
+    assert "is 0.3 s long" in short.objection(planned)
+    assert "is 1.5 s long" in Ripple(channel="shaft_torque_nm", to_s=1.5).objection(planned)
+    for metric in (ArrivalShaftTorque(to_s=2.0), ArrivalShaftTorque(to_s=0.3, mean_s=0.3)):
+        assert metric.objection(planned) == ""
+        assert np.isfinite(metric.compute(recording, STEP))
 
 
 def test_a_step_down_that_goes_too_far_has_arrived_beyond() -> None:
@@ -100,3 +116,39 @@ def test_python_control_finds_the_same_in_both_directions(before, after, damping
         ResponseTimeShaftTorque(share_percent=share).compute(recording, segment) for share in (10.0, 90.0)
     ]
     assert rise[1] - rise[0] == pytest.approx(known["RiseTime"], abs=1.001e-3)  # it takes whole samples
+
+
+@pytest.mark.parametrize(("before", "after", "rise_s"), [(25.0, 300.0, 0.06), (-150.0, 300.0, 3.0)])
+def test_an_order_of_the_wheel_that_hides_the_delay_gives_none(before, after, rise_s) -> None:
+    """A dead time of 8 ms, and 40 N m beside that are at a tenth of the step as it begins."""
+    segment = STEP.model_copy(update={"reference_before": before, "reference_after": after})
+    since = TIME - STEP.step_s
+    torque = np.interp(since, [0.008, 0.008 + rise_s], [before, after])
+    torque += 40 * np.sin(2 * np.pi * 8 * since + 0.6)
+    with pytest.raises(NoValueError, match="ms before the step: .*orders of the wheel"):
+        Delay(channel="shaft_torque_nm").compute(recording_of(TIME, shaft_torque_nm=torque), segment)
+
+
+def test_a_delay_of_nothing_is_nothing() -> None:
+    torque = np.interp(TIME - STEP.step_s, [0.0, 0.1], [0.0, 326.0])
+    found = Delay(channel="shaft_torque_nm").compute(recording_of(TIME, shaft_torque_nm=torque), STEP)
+    assert found == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_torque_that_is_there_at_the_step_answers_nothing() -> None:
+    """300 to 299 N m, with 40 N m of an order beside: at the step it is beyond both."""
+    small = STEP.model_copy(update={"reference_before": 300.0, "reference_after": 299.0})
+    since = TIME - STEP.step_s
+    torque = np.where(since < 0, 300.0, 299.0) - 40 * np.cos(2 * np.pi * 8 * since)
+    recording = recording_of(TIME, shaft_torque_nm=torque)
+    for metric in (ResponseTimeShaftTorque(), Delay(channel="shaft_torque_nm")):
+        with pytest.raises(NoValueError, match=r"259 N m as the window begins, beyond \d+ % of the step"):
+            metric.compute(recording, small)
+    check = TimeToTolerance(channel="shaft_torque_nm", share_percent=50.0)
+    assert check.compute(recording, small) == 0.0
+
+
+def test_what_is_reached_before_the_window_has_no_time_in_it() -> None:
+    recording = recording_of(TIME, shaft_torque_nm=first_order(0.0, 326.0))
+    with pytest.raises(NoValueError, match="as the window begins"):
+        ResponseTimeShaftTorque(from_s=5.0).compute(recording, STEP)

@@ -7,7 +7,21 @@ from hil.core.errors import BadInputError
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans import Array
-from test_plans.metrics import NoValueError, Peak
+from test_plans.metrics import (
+    ArrivalShaftTorque,
+    Clunk,
+    Jerk,
+    Magnitude,
+    NoValueError,
+    Overshoot,
+    Peak,
+    PlayCrossings,
+    ResponseTime,
+    SettlingTime,
+    TimeInPlay,
+    Trough,
+    VibrationDose,
+)
 from test_plans.metrics._samples import cut, evenly
 from tests.test_plans.signals import STEP, recording_of, time_axis
 
@@ -141,3 +155,57 @@ def test_the_window_is_told_in_words() -> None:
     part = Peak(channel="shaft_torque_nm", from_s=1.0, to_s=2.5)
     assert whole.window == "from the step until the end of the segment"
     assert part.window == "from 1 s after the step until 2.5 s after the step"
+
+
+BACK = STEP.model_copy(  # 300 N m, -150 from 5 s on, 300 from 6 s on
+    update={"step_s": 6.0, "first_change_s": 5.0, "reference_before": -150.0, "reference_after": 300.0}
+)
+TORQUE = np.interp(time_axis(), [5.0, 5.01, 5.2, 6.0, 6.1], [300.0, -400.0, -150.0, -150.0, 300.0])
+CHANGES = recording_of(time_axis(), shaft_torque_nm=TORQUE)
+
+
+def test_a_window_since_the_first_change_holds_every_change_of_torque() -> None:
+    assert Magnitude(channel="shaft_torque_nm").compute(CHANGES, BACK) == 300.0
+    assert Magnitude(channel="shaft_torque_nm", since="first_change").compute(CHANGES, BACK) == 400.0
+    assert PlayCrossings().compute(CHANGES, BACK) == 1
+    assert PlayCrossings(since="first_change").compute(CHANGES, BACK) == 2
+    firm = 45.0  # a tenth of the step's 450 N m
+    there, back = 2 * firm * 0.01 / 700, 2 * firm * 0.1 / 450
+    assert TimeInPlay().compute(CHANGES, BACK) == pytest.approx(back, rel=1e-9)
+    assert TimeInPlay(since="first_change").compute(CHANGES, BACK) == pytest.approx(there + back, rel=1e-9)
+    assert Clunk(since="first_change").compute(CHANGES, BACK) == pytest.approx(70_000.0, rel=1e-9)
+    assert Clunk().compute(CHANGES, BACK) == pytest.approx(4_500.0, rel=1e-9)
+
+
+def test_jerk_and_dose_since_the_first_change_see_what_was_before_the_step() -> None:
+    """A push of 2 m/s² half a second long after the first change, and nothing after the step."""
+    time = time_axis()
+    acceleration = np.where((time >= 5.0) & (time < 5.5), 2.0, 0.0)
+    speed = recording_of(time, vehicle_speed_m_s=np.cumsum(acceleration) * 1e-3)
+    assert Jerk(since="first_change").compute(speed, BACK) > 100.0
+    whole, rest = (
+        VibrationDose(since="first_change").compute(speed, BACK),
+        VibrationDose().compute(speed, BACK),
+    )
+    assert whole > 3 * rest
+    alone = BACK.model_copy(update={"step_s": 5.0, "first_change_s": None})  # a step where the change is
+    assert whole == VibrationDose().compute(speed, alone)
+    assert Jerk(since="first_change").compute(speed, BACK) == Jerk().compute(speed, alone)
+
+
+def test_without_an_earlier_change_the_window_begins_with_the_step() -> None:
+    whole = Magnitude(channel="shaft_torque_nm", since="first_change")
+    assert whole.compute(CHANGES, BACK.model_copy(update={"first_change_s": None})) == 300.0
+    assert "from the first change of torque in the segment until" in whole.definition
+    assert "that change left out" in whole.definition
+
+
+@pytest.mark.parametrize("metric", [Peak, Trough, Overshoot, ResponseTime, SettlingTime, ArrivalShaftTorque])
+def test_what_follows_one_step_cannot_begin_before_it(metric: type[Peak]) -> None:
+    with pytest.raises(ValueError, match="follows one step in its direction"):
+        metric(channel="shaft_torque_nm", since="first_change")
+
+
+def test_a_window_has_one_begin() -> None:
+    with pytest.raises(ValueError, match="both begin the window"):
+        Magnitude(channel="shaft_torque_nm", since="first_change", from_s=0.5)

@@ -38,3 +38,15 @@ def test_a_driver_who_changes_their_mind_holds_the_middle_level_shortly() -> Non
     assert (segment.reference_before, segment.reference_after) == (-150.0, 300.0)
     assert isinstance(stairs, Stairs)
     assert stairs.mean_nm == pytest.approx((300 * 2 - 150 * 0.2 + 300 * 3) / 5.2)
+
+
+@pytest.mark.parametrize(
+    ("levels", "first_change_s"),
+    [([300, -150, 300], 2.0), ([0, 0, 50, 0], 2.2), ([0, 50], None), ([0, 0, 50], None), ([5, 5], None)],
+)
+def test_stairs_know_when_the_torque_first_changes(levels: list[float], first_change_s: float | None) -> None:
+    stairs = step_of(
+        "stairs", segment="s", quantity="driving_torque", levels_nm=levels, hold_s=0.2, first_s=2, last_s=3
+    )
+    assert isinstance(stairs, Stairs)
+    assert stairs.segments()[0].first_change_s == pytest.approx(first_change_s)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.analysis.tuning import PARAMETERS, Space, values_of, with_values
-from hil.analysis.tuning._parameters import TABLES
+from hil.analysis.tuning._parameters import TABLES, refuse_wide_margin
 from hil.core.controller import load_controller
 from hil.core.controller.shaping import RequestLimits
 from hil.core.errors import BadInputError
@@ -77,3 +77,11 @@ def test_what_lies_outside_is_brought_to_the_border():
     space = Space({"lead_deg": (10.0, 20.0)})
     assert space.values(np.array([1.7])) == {"lead_deg": 20.0}
     assert space.point({"lead_deg": 3.0}) == 0.0
+
+
+def test_a_margin_that_may_become_wider_than_the_gap_is_refused() -> None:
+    wide = {"landing_margin_rad": (0.0, 0.05)}
+    with pytest.raises(BadInputError, match=r"up to 0.05 it would be wider than the gap .* = 0.04"):
+        refuse_wide_margin(CROSSING, wide, "free.toml")
+    refuse_wide_margin(CROSSING, {"landing_margin_rad": (0.0, 0.04)}, "free.toml")
+    refuse_wide_margin(CROSSING, {"lead_hz": (20.0, 60.0)}, "free.toml")

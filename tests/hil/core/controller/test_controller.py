@@ -73,12 +73,16 @@ def changed(key: str, value: Any) -> str:
         ("request.zero_band_nm", (-1.0, 1.1e4), (10.0,)),
         ("slip.allowed", (0.0, -0.1, 1.1), (0.05,)),
         ("slip.recovery_nm_s", (0.0, -0.1), (500.0,)),
-        ("play.half_gap_rad", (-1e-3, 1.1), (0.0, 0.03)),
+        ("play.half_gap_rad", (-1e-3, 1.1), (0.004, 0.03)),
+        ("play.landing_margin_rad", (-1e-3, 1.1), (0.0, 0.04)),
         ("play.crossing_speed_rad_s", (0.0, -1.0, 1.1e3), (1.5,)),
         ("play.crossing_torque_nm", (0.0, 301.0), (20.0,)),
         ("play.follow_gradient_nm_s", (0.0,), (3000.0,)),
         ("play.follow_time_constant_s", (0.0, 1e-6), (0.05,)),
-        ("play.shaft_stiffness_nm_rad", (0.0, -1.0), (5000.0,)),
+        ("play.shaft_stiffness_nm_rad", (0.0, -1.0, 0.5, 1e9), (5000.0,)),
+        ("play.shaft_damping_nms_rad", (-1.0, 1e9), (0.0, 200.0)),
+        ("play.tyre_stiffness_nm_rad", (0.0, 1e9), (5000.0,)),
+        ("play.tyre_damping_nms_rad", (-1.0, 1e9), (0.0, 500.0)),
         ("play.correction", (-0.1, 1.1), (0.0, 1.0)),
         ("play.dead_time_s", (-1e-3, 0.065, 0.7), (0.0, 0.064)),
         ("schedule.speed_m_s", ([], [2.0, 1.0], [1.0, 1.0], [1.0], [-1.0, 2.0]), ([0.0, 30.0],)),
@@ -151,3 +155,26 @@ def test_the_leads_gain_is_one_where_its_name_says(normalisation: Any) -> None:
     s = 1j * omega
     response = lead.gain * (lead.time_constant_s * s + 1) / (lead.alpha * lead.time_constant_s * s + 1)
     assert abs(response) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("points", "words"),
+    [(0, "[]: must have at least 1 entry, not none"), (7, "must have at most 6 entries, not 7")],
+)
+def test_a_table_over_speed_has_one_to_six_points(points: int, words: str) -> None:
+    data = copy.deepcopy(TABLES)
+    data["schedule"] = {
+        "speed_m_s": [float(n) for n in range(points)],
+        "wsc_factor": [1.0] * points,
+    }
+    with pytest.raises(BadInputError) as refused:
+        controller_from_toml(tomli_w.dumps(data), "here")
+    text = str(refused.value)
+    assert words in text
+    assert "tuple" not in text
+    assert "schedule.speed_m_s" in text
+
+
+def test_a_margin_wider_than_the_gap_is_refused() -> None:
+    with pytest.raises(BadInputError, match=r"landing_margin_rad = 0.05 is wider than the gap .* = 0.04"):
+        controller_from_toml(changed("play.landing_margin_rad", 0.05), "here")

@@ -16,12 +16,13 @@ from hil.core.errors.wording import factor, multiple, quantity, share
         (0.0, "0.0 %"),
         (-0.0, "0.0 %"),
         (10.0, "1000.0 %"),
-        (10.1, "10 times"),
-        (-63.279, "-63 times"),
-        (-19.0, "-19 times"),
-        (395298220.8561, "> 1000 times"),
-        (-40002446658.068, "< -1000 times"),
-        (math.inf, "> 1000 times"),
+        (10.1, "1010 %"),
+        (-63.279, "-6330 %"),
+        (-19.0, "-1900 %"),
+        (-134.6, "-13500 %"),
+        (395298220.8561, "> 100000 %"),
+        (-40002446658.068, "< -100000 %"),
+        (math.inf, "> 100000 %"),
         (math.nan, "-"),
         (0.00004, "0.004 %"),
         (-0.0004, "-0.04 %"),
@@ -29,7 +30,7 @@ from hil.core.errors.wording import factor, multiple, quantity, share
         (-1e-9, "-1e-07 %"),
     ],
 )
-def test_a_share_is_a_percentage_or_a_multiple(value: float, text: str) -> None:
+def test_a_share_is_a_percentage(value: float, text: str) -> None:
     assert share(value) == text
 
 
@@ -44,7 +45,7 @@ def test_a_change_has_its_sign() -> None:
     assert share(0.02, signed=True) == "+2.0 %"
     assert share(-0.02, signed=True) == "-2.0 %"
     assert share(0.0, signed=True) == "0.0 %"
-    assert share(40.0, signed=True) == "+40 times"
+    assert share(40.0, signed=True) == "+4000 %"
 
 
 @pytest.mark.parametrize(
