@@ -57,7 +57,7 @@ $(MODULES): $(BIN)/uv requirements/node.txt $(FRONTEND)/package-lock.json
 	$(WITH_NODE) npm ci --loglevel=error
 	@touch $@
 
-$(PAGE): $(MODULES) docs/reference/openapi.json $(FRONTEND)/index.html $(wildcard $(FRONTEND)/*.ts $(FRONTEND)/*.json) $(shell find $(FRONTEND)/src -type f ! -name schema.d.ts)
+$(PAGE): $(MODULES) docs/reference/openapi.json $(FRONTEND)/index.html $(wildcard $(FRONTEND)/*.ts $(FRONTEND)/*.json $(FRONTEND)/public/*) $(shell find $(FRONTEND)/src -type f ! -name schema.d.ts)
 	$(WITH_NODE) npm run --silent build
 	@touch $@
 

@@ -13,7 +13,6 @@ from typing import Any
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 HERE = Path(__file__).parent
-_SETTLED = "networkidle"  # what is drawn was asked for before
 
 
 def main(url: str) -> None:
@@ -60,7 +59,7 @@ def _photograph_comparison(browser: Browser, url: str) -> None:
 
 
 def _photograph(page: Page, name: str) -> None:
-    page.wait_for_load_state(_SETTLED)
+    page.wait_for_load_state("networkidle")  # what is drawn was asked for before
     page.screenshot(path=HERE / name)
 
 

@@ -11,7 +11,7 @@ from hil.api_schemas.run_list import RunsWanted
 from hil.client import Client
 from hil.core.errors import BadInputError
 from hil.service.store import Base, NoteStore, RunList
-from tests.hil.service.served import RefusedError, Served
+from tests.hil.service.served import SHORT, RefusedError, Served
 from tests.hil.service.test_access import tokens as tokens  # a service with people of every role
 from tests.hil.service.test_run_list import a_run
 
@@ -65,6 +65,7 @@ def test_there_are_not_more_than_can_be_read(notes: NoteStore) -> None:
 @pytest.fixture
 def run(tokens: tuple[Served, dict[str, str]]) -> int:
     service, _ = tokens
+    service.give("short", SHORT)
     one = service.queue()
     service.over(one)
     return one

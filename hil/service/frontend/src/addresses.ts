@@ -1,14 +1,14 @@
 // Every view has an address: what it says, and how it is written.
 
 export type Place =
-  | { view: "benches" | "runs" | "compare" | "plans" | "models" | "controllers" | "design" | "identifications" | "diagnoses" | "campaigns" | "audit" | "settings" }
+  | { view: "benches" | "runs" | "compare" | "trends" | "plans" | "models" | "controllers" | "design" | "identifications" | "diagnoses" | "campaigns" | "audit" | "settings" }
   | { view: "bench" | "panel"; bench: string }
   | { view: "run"; run: number }
   | { view: "plan" | "model" | "controller"; name: string }
   | { view: "identification" | "diagnosis" | "campaign"; id: number }
   | { view: "missing"; path: string };
 
-const LISTS = ["benches", "runs", "compare", "plans", "models", "controllers", "design", "identifications", "diagnoses", "campaigns", "audit", "settings"] as const;
+const LISTS = ["benches", "runs", "compare", "trends", "plans", "models", "controllers", "design", "identifications", "diagnoses", "campaigns", "audit", "settings"] as const;
 const NAMED = { plans: "plan", models: "model", controllers: "controller" } as const;
 const NUMBERED = { identifications: "identification", diagnoses: "diagnosis", campaigns: "campaign" } as const;
 
@@ -68,7 +68,7 @@ export const to = {
 };
 
 const TITLES: Record<(typeof LISTS)[number], string> = {
-  benches: "Benches", runs: "Runs", compare: "Compare runs", plans: "Plans", models: "Models", controllers: "Controllers",
+  benches: "Benches", runs: "Runs", compare: "Compare runs", trends: "Trends", plans: "Plans", models: "Models", controllers: "Controllers",
   design: "Design a controller", identifications: "Identifications", diagnoses: "Diagnoses", campaigns: "Campaigns", audit: "Audit log", settings: "Settings",
 };
 

@@ -49,7 +49,7 @@ def test_a_text_is_checked_and_foreseen_and_nothing_is_kept(there: Served) -> No
     found = there.post("/plan-checks", {"name": "short", "text": SHORT})
     assert (found["mistakes"], found["plan"]["name"]) == ([], "short")
     wrong = there.post("/plan-checks", {"name": "short", "text": SHORT.replace("upper: 400", "uper: 400")})
-    assert [one["line"] for one in wrong["mistakes"]] == [13, 13][: len(wrong["mistakes"])]
+    assert [(one["line"], one["key"]) for one in wrong["mistakes"]] == [(12, "criteria[1].uper")]
     wanted = {"plan": "short", "bench": "sim", "text": SHORT, "values": {"torque_nm": 150}}
     forecast = there.post("/forecasts", wanted)
     assert forecast["fits"]

@@ -116,6 +116,7 @@ def test_a_question_is_answered_on_the_operator_panel(page: playwright.Page, the
         ("runs?plan=short", "Runs"),
         ("runs/1", re.compile("A short plan")),
         ("compare?runs=1,2", "Compare runs"),
+        ("trends?bench=sim&plan=short", "Trends"),
         ("plans", "Plans"),
         ("plans/acceptance", re.compile("Vibration suppression")),
         ("models", "Models"),

@@ -73,3 +73,13 @@ def test_a_drift_is_told_before_it_reaches_the_limit(page: playwright.Page, ther
     expect(choice(page, "Criterion")).to_have_value("s.creep")
     expect(trend).to_contain_text("six values in a row rising or falling (Nelson's rule 3): runs 1 to 11")
     expect_drawn(trend, "phase")  # rings around the values
+
+
+def test_a_trend_has_an_address_of_its_own(page: playwright.Page, there: Served) -> None:
+    to(page, there, "trends?bench=sim&plan=p&dut=A&criterion=s.peak")
+    trend = region(page, "Trend over runs of p")
+    expect(trend).to_contain_text("mean 303 N m, limit ≤ 330 N m, Cpk 2.07")
+    expect(choice(page, "of")).to_have_value("A")
+    refuse_hard_to_use(page)
+    to(page, there, "trends?plan=nothing")
+    expect(page.get_by_text("No run of this plan has ended on this bench")).to_be_visible()

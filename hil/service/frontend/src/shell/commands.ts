@@ -9,7 +9,7 @@ import { stopNow } from "../api/client.ts";
 import { signOut } from "./sign-in.tsx";
 
 export const MENU = [
-  ["benches", "Benches"], ["runs", "Runs"], ["compare", "Compare"], ["plans", "Plans"], ["models", "Models"],
+  ["benches", "Benches"], ["runs", "Runs"], ["compare", "Compare"], ["trends", "Trends"], ["plans", "Plans"], ["models", "Models"],
   ["controllers", "Controllers"], ["design", "Design"], ["identifications", "Identify"], ["diagnoses", "Diagnose"], ["campaigns", "Campaigns"], ["audit", "Audit"], ["settings", "Settings"],
 ] as const;
 

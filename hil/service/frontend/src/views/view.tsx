@@ -17,6 +17,7 @@ import { RunView } from "./runs/run.tsx";
 import { Runs } from "./runs/runs.tsx";
 import { Settings } from "./settings.tsx";
 import { Diagnoses, DiagnosisView } from "./studies/diagnoses.tsx";
+import { TrendsView } from "./trends/trends-view.tsx";
 import { Identifications, IdentificationView } from "./studies/identifications.tsx";
 
 export function View({ place }: { place: Place }): JSX.Element {
@@ -27,6 +28,7 @@ export function View({ place }: { place: Place }): JSX.Element {
     case "runs": return <Runs />;
     case "run": return <RunView key={place.run} run={place.run} />;
     case "compare": return <Compare />;
+    case "trends": return <TrendsView />;
     case "plans": return <Plans />;
     case "plan": return <PlanView key={place.name} name={place.name} />;
     case "models": return <Models />;

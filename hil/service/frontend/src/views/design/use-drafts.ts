@@ -1,7 +1,7 @@
 // What the service draws of drafts, as they are moved: one question at a time, of the newest that are wanted.
 
 import { useEffect, useRef, useState } from "preact/hooks";
-import { post } from "../../api/client.ts";
+import { post, Refused } from "../../api/client.ts";
 import type { DraftData } from "../../api/types.ts";
 
 export interface Drawn {
@@ -19,6 +19,7 @@ export function useDrafts(bodies: (object | null)[]): Drawn[] {
   const all = keys.join("\n");
   useEffect(() => {
     wanted.current = keys;
+    forgetFailures(known.current);
     const follow = async () => {
       busy.current = true;
       for (let key = missing(wanted.current, known.current); key; key = missing(wanted.current, known.current)) {
@@ -36,6 +37,11 @@ export function useDrafts(bodies: (object | null)[]): Drawn[] {
     if (answer && !(answer instanceof Error)) last.current[at] = answer;
     return { found: last.current[at] ?? null, error: answer instanceof Error ? answer : null };
   });
+}
+
+// What was refused for its numbers stays so; what failed otherwise is asked again with the next move.
+function forgetFailures(known: Map<string, DraftData | Error>): void {
+  for (const [key, one] of known) if (one instanceof Error && !(one instanceof Refused && one.status === 422)) known.delete(key);
 }
 
 const missing = (wanted: string[], known: Map<string, unknown>): string | undefined => wanted.find((key) => key !== "" && !known.has(key));

@@ -64,7 +64,7 @@ function Found({ plan }: { plan: Plan }): JSX.Element {
       <Heading kind={`${plan.built_in ? "Built-in plan" : "Given plan"} ${plan.name}`}>{plan.title || plan.name}</Heading>
       {plan.description ? <p>{plan.description}</p> : null}
       {plan.hazard ? <p class="bad">{`Hazardous: ${plan.hazard}. A second person approves each run.`}</p> : null}
-      <p class="links"><a href={`${to.list("runs")}?plan=${encodeURIComponent(plan.name)}`}>All runs of this plan</a>{may("engineer") ? <a href={`${to.plan(plan.name)}?write=on`}>{plan.built_in ? "Edit a copy" : "Edit"}</a> : null}</p>
+      <p class="links"><a href={`${to.list("runs")}?plan=${encodeURIComponent(plan.name)}`}>All runs of this plan</a> <a href={`${to.list("trends")}?plan=${encodeURIComponent(plan.name)}`}>Trends</a>{may("engineer") ? <a href={`${to.plan(plan.name)}?write=on`}>{plan.built_in ? "Edit a copy" : "Edit"}</a> : null}</p>
       <div class="columns">
         <div>
           {variables.length ? (

@@ -5,29 +5,38 @@ import { useEffect, useState } from "preact/hooks";
 import type { Trend } from "../../api/types.ts";
 import { useData } from "../../data.ts";
 import { figure, limitText } from "../../format.ts";
+import { useQuery } from "../../router.ts";
 import { Section } from "../../ui/parts.tsx";
 import { Signals } from "./signals.tsx";
 import { TrendPlot } from "./trend-plot.tsx";
 
+const NONE: Trend[] = [];
 const LEAST = 5; // values of which a scatter is reported
 
-export function Trends({ bench, plan }: { bench: string; plan: string }): JSX.Element | null {
-  const [dut, setDut] = useState(""), [criterion, setCriterion] = useState("");
+export function Trends({ bench, plan, empty }: { bench: string; plan: string; empty?: string }): JSX.Element | null {
+  const [chosen, setChosen] = useQuery(), dut = chosen.get("dut") ?? "", criterion = chosen.get("criterion");
+  const put = (name: string, value: string) => {
+    const next = new URLSearchParams(chosen);
+    if (value) next.set(name, value); else next.delete(name);
+    setChosen(next);
+  };
+  const setDut = (value: string) => put("dut", value), setCriterion = (value: string) => put("criterion", value);
   const query = new URLSearchParams({ bench, plan, ...(dut ? { dut } : {}) });
-  const all = useData<Trend[]>(`/trends?${query}`).data ?? [];
+  const asked = useData<Trend[]>(`/trends?${query}`), all = asked.data ?? NONE;
   const found = all.filter((one) => one.points.some((point) => point.value !== null));
   const [duts, setDuts] = useState<string[]>([]);
   useEffect(() => {
     if (!dut) setDuts([...new Set(all.flatMap((one) => one.points.map((point) => point.dut)))].filter(Boolean).sort());
   }, [all, dut]);
+  const devices = dut && !duts.includes(dut) ? [dut, ...duts] : duts;
   const trend = found.find((one) => one.criterion === criterion) ?? found[0];
-  if (!trend) return null;
+  if (!trend) return empty && asked.data ? <p class="quiet">{empty}</p> : null;
   return (
     <Section title={`Trend over runs of ${plan}`} label="trend">
       <Drifting of={found} chosen={trend.criterion} onChoose={setCriterion} />
       <div class="row small">
         <label>Criterion <select value={trend.criterion} onChange={(event) => setCriterion(event.currentTarget.value)}>{found.map((one) => <option key={one.criterion}>{one.criterion}</option>)}</select></label>
-        <label>of <select value={dut} onChange={(event) => setDut(event.currentTarget.value)}><option value="">all devices</option>{duts.map((one) => <option key={one}>{one}</option>)}</select></label>
+        <label>of <select value={dut} onChange={(event) => setDut(event.currentTarget.value)}><option value="">all devices</option>{devices.map((one) => <option key={one}>{one}</option>)}</select></label>
       </div>
       <p class="quiet">{figuresOf(trend)}</p>
       <TrendPlot trend={trend} label={`${trend.criterion} over ${trend.points.length} runs: ${figuresOf(trend)}`} />
