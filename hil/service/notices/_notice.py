@@ -70,7 +70,9 @@ def of_drifts(run: RunData, found: Iterable[TrendData], address: str) -> list[No
                 "criterion": trend.criterion,
                 "rule": signal.rule,
                 "runs": signal.runs,
-                "url": _link(address, f"benches/{run.bench}"),
+                "url": _link(
+                    address, f"trends?bench={run.bench}&plan={run.plan}&criterion={trend.criterion}"
+                ),
             }
             id_ = f"drift-{run.id}-{trend.criterion}-{signal.rule}"
             notices.append(_notice(id_, ("drift",), run, subject, text, data))
