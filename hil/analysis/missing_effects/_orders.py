@@ -32,24 +32,25 @@ def orders_of(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) -
     orders = np.arange(FINE, _HIGHEST, FINE)
     slopes, energy = np.zeros(len(orders), complex), np.zeros(len(orders))
     for index, one in enumerate(problem.series):
-        error = np.where(one.has, np.nan_to_num(point.errors[index]), 0.0)
+        error = point.errors[index]
         count = len(error)
         frequency: Array = np.fft.rfftfreq(count, 1.0 / one.rate_hz).astype(np.float64)
         response = np.zeros((3, len(frequency)), complex)
         response[:, 1:] = system.response(frequency[1:], _SOURCES[side])
-        weight = np.where(
-            one.has[:, None], problem.spectrum.weights(count, one.rate_hz).T ** 2 * 2.0 / count, 0.0
-        )
-        weight = np.nan_to_num(weight) * 2.0 / count
-        back = np.sum(np.conj(response) * weight * np.fft.rfft(error, axis=0).T, axis=0)
-        pushed = np.fft.irfft(back, count)
-        gain = np.sum(np.abs(response) ** 2 * weight, axis=0)
+        weight = problem.spectrum.weights(count, one.rate_hz).T ** 2
+        slope = problem.spectrum.sent_back(np.nan_to_num(error[:, one.has]), one.has, one.rate_hz)
+        back = np.sum(np.conj(response[one.has]) * np.fft.rfft(slope, axis=0).T, axis=0)
+        gain = np.sum(np.abs(response[one.has]) ** 2 * weight[one.has], axis=0)
         angle = problem.angles[index][: count * one.block, 0 if side == "wheel" else 1]
         angle = angle.reshape(count, one.block).mean(axis=1)
-        slopes += over_angle(pushed, angle, len(orders))
         speed = np.abs(np.gradient(angle)) * one.rate_hz / (2 * np.pi)
+        # a ripple faster than errors are sampled must not look like a slow one
+        finer = int(np.ceil(2.0 * _HIGHEST * np.max(speed) / one.rate_hz)) + 1
+        at = np.arange(count * finer) / finer
+        pushed = np.fft.irfft(back, count * finer) * finer
+        slopes += over_angle(pushed, np.interp(at, np.arange(count), angle), len(orders)) / finer
         energy += _energy(speed, orders, frequency, gain)
-    promise = np.abs(slopes) ** 2 / np.maximum(energy, np.max(energy, initial=0.0) * 1e-3 + 1e-300)
+    promise = np.abs(slopes) ** 2 / np.maximum(energy, np.max(energy, initial=0.0) * 1e-9 + 1e-300)
     turns = max(float(np.ptp(angle)) for angle in _angles(problem, side)) / (2 * np.pi)
     return peaks(orders, np.where(orders * turns >= _PERIODS, promise, 0.0), _COUNT)
 
