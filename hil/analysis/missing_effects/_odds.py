@@ -55,7 +55,9 @@ class Candidate:
 
 
 def remains(had: Array, has: Array, noise: Array, slow: float) -> float:
-    """Share of the variance beyond noise that stays, mean of the channels; those near their noise count less.
+    """Share of the variance beyond noise that stays, mean of channels; those with little count less.
+
+    Where all that stays may be slow noise nothing stays, if what was taken off is more than that.
 
     Args:
         had: mean square of errors before, (3,); NaN where a channel was not recorded.
@@ -63,13 +65,17 @@ def remains(had: Array, has: Array, noise: Array, slow: float) -> float:
         noise: variance of proven noise, (3,).
         slow: how many times that may be slow noise, which no name takes off.
     """
-    before, after = had - slow * noise, np.maximum(has - slow * noise, 0.0)
-    there = np.isfinite(before) & (before > 0.0)
-    if not there.any():
-        return 1.0
-    weight = np.minimum(before[there] / noise[there], 1.0)
-    share = np.minimum(after[there] / before[there], 2.0)
-    return float(min(np.sum(weight * share) / np.sum(weight), 1.0))
+    there = np.isfinite(had)
+    had, has, noise = had[there], has[there], noise[there]
+    off, rest = had - has, np.maximum(has - slow * noise, 0.0)
+    if not rest.any():
+        unproven = np.maximum(has - noise, 0.0)
+        stays = float(np.min(unproven / np.maximum(off + unproven, 1e-300)))
+        return 0.0 if stays <= 0.5 else min(stays, 1.0)
+    whole = off + rest
+    weight = np.minimum(np.maximum(whole, rest) / noise, 1.0)
+    share = np.minimum(rest / np.maximum(whole, 1e-300), 2.0)
+    return float(min(np.sum(np.maximum(weight, 0.0) * share) / np.sum(np.maximum(weight, 0.0)), 1.0))
 
 
 def weights_of(candidates: Sequence[Candidate], values: float) -> Array:

@@ -74,7 +74,7 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
             float(w) for one, w in zip(candidates, weights, strict=True) if {*one.names} >= {*best.names}
         )
         effects += _mismatches(done, numbers, sure)
-    if not best.names and done.problem.is_noise(best.point.errors):
+    if done.problem.is_noise(best.point.errors):
         effects += _roundings(done, float(weights[candidates.index(best)]))
     something_else = _remains(of, done.found[()], best) if best.names else 0.0
     verdict: Verdict = "unknown"
