@@ -16,6 +16,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -54,7 +55,8 @@ _SAME = {
 class Case:
     """One question: a base, recordings, what is hidden (empty: nothing with a name), how to judge.
 
-    Names in `beside` are neither asked for nor wrong. `off` gives how many standard errors numbers are off.
+    Names in `beside` are neither asked for nor wrong. `off` gives how many standard errors numbers are off,
+    `official` what a model reaches in a public benchmark's own measure.
     """
 
     name: str
@@ -66,6 +68,7 @@ class Case:
     right: Callable[[dict[str, Any]], bool]
     beside: Sequence[str] = ()
     off: Callable[[dict[str, Any]], Sequence[float]] = lambda answer: ()
+    official: Callable[[Model], str] = lambda model: ""
 
 
 @dataclass
@@ -172,7 +175,8 @@ def _cell(who: str, case: Case, answer: dict[str, Any], took: float, tally: Tall
     gaps = answer.get("holdout_gap") or answer.get("gap") or {}
     left = max((100.0 * float(gap["after"]) for gap in gaps.values()), default=float("nan"))
     text = " + ".join(named) or str(answer["verdict"])
-    return f"{who} {'right' if right else 'WRONG'} {text}, {left:.2g} % left, {took:.1f} s"
+    reached = f", {answer['official']}" if answer.get("official") else ""
+    return f"{who} {'right' if right else 'WRONG'} {text}, {left:.2g} % left, {took:.1f} s{reached}"
 
 
 def _label(effect: dict[str, Any]) -> str:
@@ -191,7 +195,10 @@ def _new(case: Case) -> dict[str, Any]:
         back = _gaps(found.model, case.holdout or case.recordings, tuple(gaps))
     except HilError:  # too stiff to be simulated as users do it
         back = dict.fromkeys(gaps, float("inf"))
-    return found.as_json() | {"given_back": [back[name] / gaps[name].after for name in gaps]}
+    return found.as_json() | {
+        "given_back": [back[name] / gaps[name].after for name in gaps],
+        "official": case.official(found.model),
+    }
 
 
 def _gaps(model: Model, recordings: Sequence[Recording], channels: Sequence[str]) -> dict[str, float]:
@@ -273,7 +280,15 @@ def _real(directory: Path, names: Sequence[str]) -> Iterator[Case]:
         for which, model in _bases(start).items():
             right = _exactly(one.hidden, one.beside)
             yield Case(
-                name, which, model, measured.recordings, measured.holdout, one.hidden, right, one.beside
+                name,
+                which,
+                model,
+                measured.recordings,
+                measured.holdout,
+                one.hidden,
+                right,
+                one.beside,
+                official=partial(one.official, one.place(directory)),
             )
 
 
