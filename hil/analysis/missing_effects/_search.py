@@ -186,9 +186,14 @@ def _best_of(
     AISTATS 2016, 240).
     """
     tried: list[Candidate] = []
-    for hypothesis, _ in suggested[:_TRIED]:
+    reached = 0.0
+    most = max((gain for _, gain in suggested if gain < math.inf), default=0.0)
+    for hypothesis, gain in suggested[:_TRIED]:
+        if gain < HALF * min(most, reached):
+            break  # others have more before them and more behind them
         show(" + ".join(hypothesis.names))
         tried.append(done.fitted(hypothesis, best, 1))
+        reached = max(reached, tried[-1].log_likelihood - best.log_likelihood)
     rounds = 1
     while len(tried) > _RIVALS:
         tried.sort(key=done.score, reverse=True)
@@ -208,14 +213,21 @@ def _suggested(done: Search, best: Candidate) -> list[tuple[Hypothesis, float]]:
     read = readings(best.point.hypothesis, done.problem.series) if done.problem.model.kind == "rigid" else []
     by_name = {one.hypothesis.names: one.hypothesis for one in reversed(read)}
     order = dict.fromkeys(one.hypothesis.names for one in read)
-    found = [(by_name[names], math.inf) for names in order]
+
+    def likelier(*starts: Hypothesis) -> Hypothesis:
+        return max(starts, key=lambda one: done.score(done.at(one, best)))
+
+    found = [
+        (likelier(one, best.point.hypothesis.with_term(one.terms[-1], one.opened[-1])), math.inf)
+        for one in (by_name[names] for names in order)
+    ]
     promised = promises(done.problem, linearised(done.problem, best.point))
-    least = max(done.cost_of_a_number(best), HALF * max((one.gain for one in promised), default=0.0))
+    least = done.cost_of_a_number(best)
     for sizes in best_by_name([one for one in promised if one.gain > least], _RIVALS):
         abrupt = EFFECTS[sizes[0].use.id].abrupt
         for one in sizes if abrupt else sizes[:1]:
-            starts = [base.with_term(one.use) for base in (best.point.hypothesis, one.numbers)]
-            found.append((max(starts, key=lambda h: done.score(done.at(h, best))), one.gain))
+            starts = (base.with_term(one.use) for base in (best.point.hypothesis, one.numbers))
+            found.append((likelier(*starts), one.gain))
     return sorted(found, key=lambda one: -one[1])
 
 

@@ -12,7 +12,7 @@ make up a name that takes off less than itself.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +25,7 @@ from hil.analysis.missing_effects._odds import Candidate, remains, weights_of
 from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Verdict
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._search import HALF, Search
+from hil.analysis.missing_effects._spectrum import RIGHT_TO
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
@@ -73,7 +74,7 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
         sure = sum(
             float(w) for one, w in zip(candidates, weights, strict=True) if {*one.names} >= {*best.names}
         )
-        effects += _mismatches(done, numbers, sure)
+        effects += _mismatches(done, numbers, sure, best)
     if done.problem.is_noise(best.point.errors):
         effects += _roundings(done, float(weights[candidates.index(best)]))
     something_else = _remains(of, done.found[()], best) if best.names else 0.0
@@ -259,16 +260,19 @@ def _is_far(numbers: Mapping[str, tuple[float, float, float]], done: Search) -> 
 
 
 def _mismatches(
-    done: Search, numbers: Mapping[str, tuple[float, float, float]], weight: float
+    done: Search, numbers: Mapping[str, tuple[float, float, float]], weight: float, best: Candidate
 ) -> list[Named]:
-    """Numbers that are wrong by more than their tolerance and doubt, each with the probability of that."""
+    """Numbers that are wrong by more than their tolerance and doubt, each with the probability of that.
+
+    One that moves no channel by more than what no model is right to says nothing.
+    """
     from scipy.special import ndtr
 
     found = []
     for name, (_, value, error) in numbers.items():
         moved, doubt = _off(name, numbers, done)
         sure = weight * float(ndtr((moved - 1.0) / max(doubt, 1e-12)))
-        if sure >= HALF and moved - 1.0 > doubt:
+        if sure >= HALF and moved - 1.0 > doubt and _shows(done.problem, best.point, name):
             found.append(
                 Named(
                     EffectUse("parameter_mismatch", {"parameter": name, "value": value}),
@@ -277,3 +281,14 @@ def _mismatches(
                 )
             )
     return found
+
+
+def _shows(problem: Problem, point: Point, name: str) -> bool:
+    """Whether a number of the base put back moves a channel by more than what no model is right to."""
+    base = {name: problem.model.parameters[name]}
+    back = point_at(
+        problem, replace(point.hypothesis, numbers={**point.hypothesis.numbers, **base}), point.starts
+    )
+    pairs = zip(back.errors, point.errors, strict=True)
+    moved = problem.mean_square([one - other for one, other in pairs])
+    return bool(np.nanmax(moved / np.maximum(problem.signal, 1e-300)) > RIGHT_TO**2)
