@@ -57,7 +57,7 @@ class Candidate:
 def remains(had: Array, has: Array, noise: Array, slow: float) -> float:
     """Share of the variance beyond noise that stays, mean of channels; those with little count less.
 
-    Where all that stays may be slow noise nothing stays, if what was taken off is more than that.
+    Where all that stays may be slow noise, nothing stays if what was taken off is more than that.
 
     Args:
         had: mean square of errors before, (3,); NaN where a channel was not recorded.
@@ -69,9 +69,9 @@ def remains(had: Array, has: Array, noise: Array, slow: float) -> float:
     had, has, noise = had[there], has[there], noise[there]
     off, rest = had - has, np.maximum(has - slow * noise, 0.0)
     if not rest.any():
-        unproven = np.maximum(has - noise, 0.0)
-        stays = float(np.min(unproven / np.maximum(off + unproven, 1e-300)))
-        return 0.0 if stays <= 0.5 else min(stays, 1.0)
+        unproven = float(np.sum(np.maximum(has - noise, 0.0) / noise))
+        taken = float(np.sum(off / noise))
+        return 0.0 if taken > unproven else min(unproven / max(taken + unproven, 1e-300), 1.0)
     whole = off + rest
     weight = np.minimum(np.maximum(whole, rest) / noise, 1.0)
     share = np.minimum(rest / np.maximum(whole, 1e-300), 2.0)

@@ -22,7 +22,7 @@ _HIGHEST = 60.0  # order
 FINE = 0.02
 """Distance of orders that are looked at."""
 _PERIODS = 2.0  # of a ripple that a recording must hold
-_COUNT = 3
+_COUNT = 8  # that are simulated
 _SOURCES = {"wheel": "extra_shaft_torque_nm", "rotor": "rotor_loss_nm"}
 
 

@@ -210,7 +210,7 @@ def _suggested(done: Search, best: Candidate) -> list[tuple[Hypothesis, float]]:
     Those that the latent torque names (which promises no number, so they are all tried), and those that
     promise more than they cost, best first.
     """
-    read = readings(best.point.hypothesis, done.problem.series) if done.problem.model.kind == "rigid" else []
+    read = readings(best.point.hypothesis, done.problem.series)
     by_name = {one.hypothesis.names: one.hypothesis for one in reversed(read)}
     order = dict.fromkeys(one.hypothesis.names for one in read)
 
