@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._fit import Point
 from hil.analysis.missing_effects._problem import Problem
+from hil.analysis.missing_effects._spectrum import SEGMENT_S, white
 from hil.plant import linear_system_of
 
 Array = npt.NDArray[np.float64]
@@ -22,12 +23,21 @@ _HIGHEST = 60.0  # order
 FINE = 0.02
 """Distance of orders that are looked at."""
 _PERIODS = 2.0  # of a ripple that a recording must hold
-_COUNT = 8  # that are simulated
+_COUNT = 4
 _SOURCES = {"wheel": "extra_shaft_torque_nm", "rotor": "rotor_loss_nm"}
 
 
 def orders_of(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) -> list[float]:
-    """The most promising orders, best first; none where nothing turns."""
+    """The most promising orders, by weights of the misfit and by those of noise; none where nothing turns.
+
+    A ripple that is most of the misfit makes its own octaves weigh little.
+    """
+    by_noise = problem.weighed_by(white(problem.noise, problem.rate_hz))
+    found = [_orders_by(one, point, side) for one in (problem, by_noise)]
+    return list(dict.fromkeys(found[0] + found[1]))
+
+
+def _orders_by(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) -> list[float]:
     system = linear_system_of(point.hypothesis.packed()[0])
     orders = np.arange(FINE, _HIGHEST, FINE)
     slopes, energy = np.zeros(len(orders), complex), np.zeros(len(orders))
@@ -36,7 +46,8 @@ def orders_of(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) -
         count = len(error)
         frequency: Array = np.fft.rfftfreq(count, 1.0 / one.rate_hz).astype(np.float64)
         response = np.zeros((3, len(frequency)), complex)
-        response[:, 1:] = system.response(frequency[1:], _SOURCES[side])
+        fast = frequency > 1.0 / SEGMENT_S  # what is slower the starts of windows take up
+        response[:, fast] = system.response(frequency[fast], _SOURCES[side])
         weight = problem.spectrum.weights(count, one.rate_hz).T ** 2
         slope = problem.spectrum.sent_back(np.nan_to_num(error[:, one.has]), one.has, one.rate_hz)
         back = np.sum(np.conj(response[one.has]) * np.fft.rfft(slope, axis=0).T, axis=0)

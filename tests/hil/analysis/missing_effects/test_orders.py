@@ -36,8 +36,8 @@ def test_an_order_whose_misfit_grows_towards_a_resonance_promises_most(order: fl
     """A run up from standstill: the ripple gets faster and larger until the recording ends."""
     ripple = EffectUse("wheel_order_disturbance", {"order": order, "amplitude_nm": 20.0, "phase_rad": 0.4})
     hidden = Model("two_inertia", dict(_CHAIN.parameters), (ripple,))
-    time = np.arange(12_000) * 1e-3
-    torque = 40.0 + 5.0 * np.sin(2.0 * np.pi * 0.5 * time)
+    time = np.arange(24_000) * 1e-3
+    torque = 20.0 + 5.0 * np.sin(2.0 * np.pi * 0.5 * time)
     channels = simulate(hidden, torque, 1e-3)
     rng = np.random.default_rng(0)
     shown = {name: one + rng.normal(0.0, 0.01 * np.std(one), len(one)) for name, one in channels.items()}
