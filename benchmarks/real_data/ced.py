@@ -43,7 +43,7 @@ def _sets(path: Path) -> list[tuple[Recording, Array]]:
     found = []
     for voltage, magnitude in _SETS:
         torque, seen = data[voltage].ravel(), data[magnitude].ravel()
-        time_s = _SAMPLE_S * np.arange(len(torque))
+        time_s = _SAMPLE_S * np.arange(len(torque), dtype=np.float64)
         drag = EffectUse("viscous_drag", {"coefficient_nms_rad": _BACK_EMF})
         still = Recording({TIME: time_s, INPUT: torque, _WHEEL: np.zeros(len(torque))}, path)
         linear = replay(Model("two_inertia", dict(_NUMBERS), (drag,)), still)[_WHEEL]

@@ -42,7 +42,7 @@ def _official(directory: Path, model: Model) -> str:
     """Root mean square error of the position of the pulses, simulated from rest where they begin."""
     held = _recording(directory / _HELD)
     measured = matlab(directory / _HELD, ("qm",))["qm"].ravel()
-    moved = cumulative_trapezoid(replay(model, held)[SPEED], held.time_s, initial=0.0)
+    moved = cumulative_trapezoid(replay(model, held)[SPEED], held.time_s, initial=0)
     error = measured - measured[0] - moved
     return f"official window: position rmse {1e3 * float(np.sqrt(np.mean(error[_FIRST:] ** 2))):.2f} mm"
 

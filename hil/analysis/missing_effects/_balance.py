@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._mass import WINDOW_S, Mass, mass_of, window_means
-from hil.analysis.missing_effects._orders import FINE, over_angle, peaks
+from hil.analysis.missing_effects._orders import FINE, PERIODS, over_angle, peaks
 from hil.analysis.missing_effects._series import Series
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
@@ -32,7 +32,6 @@ Array = npt.NDArray[np.float64]
 
 _HIGHEST = 40.0  # order
 _NEAR = 0.25 * np.arange(-8, 9)  # widths of a peak, which what stands beside it moves
-_PERIODS = 2.0  # of a ripple that a recording must hold
 _PEAKS = 2  # orders of turning that are tried
 
 
@@ -112,10 +111,10 @@ def _orders(mass: Mass, hypothesis: Hypothesis) -> list[float]:
 
     power = np.abs(over_angle(rest, np.concatenate(middles), round(_HIGHEST / FINE)))
     orders = FINE * np.arange(1.0, len(power) + 1.0, dtype=np.float64)
-    power[orders * turns < _PERIODS] = 0.0
+    power[orders * turns < PERIODS] = 0.0
     found = []
     for peak in peaks(orders, power, 2 * _PEAKS):
-        near = [one for one in peak + _NEAR / turns if one * turns >= _PERIODS]
+        near = [one for one in peak + _NEAR / turns if one * turns >= PERIODS]
         best = max(near, key=drop)
         found.append((drop(best), float(best)))
     return [order for _, order in sorted(found, reverse=True)[:_PEAKS]]

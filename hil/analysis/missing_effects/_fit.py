@@ -25,6 +25,8 @@ _START_ROUNDS = 3
 _DAMPING = 1e-3  # of the normal equations' diagonal, at first
 _SETTLED = 1e-5  # of the cost: a step that brings less is the last one
 _SMALLEST = 1e-6  # step of a coordinate
+ROUNDS = 6
+"""Of a fit at most, each with the weights that the one before left."""
 EVALUATIONS = 12  # of a round: the next one has better starts and weights
 
 

@@ -22,6 +22,8 @@ from hil.analysis.missing_effects._fit import Point
 Array = npt.NDArray[np.float64]
 
 _DRAWS = 1000
+ALIKE = log(20.0)
+"""Two hypotheses are alike where the data would give the right one odds below 20:1."""
 
 
 @dataclass(frozen=True)

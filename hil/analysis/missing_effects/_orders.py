@@ -22,7 +22,8 @@ Array = npt.NDArray[np.float64]
 _HIGHEST = 60.0  # order
 FINE = 0.02
 """Distance of orders that are looked at."""
-_PERIODS = 2.0  # of a ripple that a recording must hold
+PERIODS = 2.0
+"""Of a ripple that a recording must hold."""
 _COUNT = 4
 _SOURCES = {"wheel": "extra_shaft_torque_nm", "rotor": "rotor_loss_nm"}
 
@@ -63,7 +64,7 @@ def _orders_by(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) 
         energy += _energy(speed, orders, frequency, gain)
     promise = np.abs(slopes) ** 2 / np.maximum(energy, np.max(energy, initial=0.0) * 1e-9 + 1e-300)
     turns = max(float(np.ptp(angle)) for angle in _angles(problem, side)) / (2 * np.pi)
-    return peaks(orders, np.where(orders * turns >= _PERIODS, promise, 0.0), _COUNT)
+    return peaks(orders, np.where(orders * turns >= PERIODS, promise, 0.0), _COUNT)
 
 
 def _angles(problem: Problem, side: str) -> list[Array]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from hil.analysis.missing_effects._balance import read_numbers, readings
 from hil.analysis.missing_effects._fit import (
+    ROUNDS,
     Point,
     fit,
     linearised,
@@ -33,7 +34,6 @@ from hil.core.model import EffectUse
 HALF = 0.5  # of what stays without it a name must take off
 _TRIED = 8  # hypotheses that a step begins with, the most promising ones; half of them go on each time
 _RIVALS = 2  # of a step are fitted to their end
-_ROUNDS = 6
 _SETTLED = 0.1  # growth of log likelihood between rounds that ends them
 _BESIDE = 0.3  # of an effect's first number: where an optional one in the same unit begins
 _MOST_NAMES = 4
@@ -66,7 +66,7 @@ class Search:
         self.values = powers.values(self.problem.noise)
         self.problem = self.problem.weighed_by(powers.spectrum(self.problem.noise))
 
-    def fitted(self, hypothesis: Hypothesis, near: Candidate | None, rounds: int = _ROUNDS) -> Candidate:
+    def fitted(self, hypothesis: Hypothesis, near: Candidate | None, rounds: int = ROUNDS) -> Candidate:
         """Fit a hypothesis, weighed by the spectrum that it leaves itself; the best of its names is kept."""
         goes_on = near is not None and near.point.hypothesis is hypothesis
         point = (

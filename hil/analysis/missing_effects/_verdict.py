@@ -21,7 +21,7 @@ from hil.analysis.missing_effects._curve import curves_of
 from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised, point_at
 from hil.analysis.missing_effects._hypothesis import TOLERANCE, Hypothesis
 from hil.analysis.missing_effects._noise import rounding_step
-from hil.analysis.missing_effects._odds import Candidate, remains, weights_of
+from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains, weights_of
 from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Verdict
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._search import HALF, Search
@@ -32,8 +32,6 @@ from hil.core.model import EffectUse, Model
 
 Array = npt.NDArray[np.float64]
 
-_ALIKE = np.log(20.0)
-"""Two hypotheses are alike where the data would give the right one odds below 20:1."""
 _LATE = {"actuator_lag": ("sensor_lag", "time_constant_s"), "dead_time": ("channel_skew", "delay_s")}
 _RIVALS = 3  # names that may take the place of another
 _SHOWN = 5  # alternatives
@@ -178,9 +176,9 @@ def _alike(done: Search, best: Candidate, candidates: Sequence[Candidate]) -> di
     found: dict[str, tuple[str, ...]] = {}
     for one in candidates:
         lost, new = {*best.names} - {*one.names}, {*one.names} - {*best.names}
-        if len(lost) != 1 or len(new) != 1 or done.score(best) - done.score(one) > _ALIKE:
+        if len(lost) != 1 or len(new) != 1 or done.score(best) - done.score(one) > ALIKE:
             continue
-        if _apart(problem, best.point, one.point) < _ALIKE:
+        if _apart(problem, best.point, one.point) < ALIKE:
             name = lost.pop()
             found[name] = (*found.get(name, ()), new.pop())
     for index, use in enumerate(best.point.hypothesis.terms):
@@ -190,7 +188,7 @@ def _alike(done: Search, best: Candidate, candidates: Sequence[Candidate]) -> di
         laws = [EFFECTS[other.id].law for other in best.point.hypothesis.without(index).terms]
         linear = all(law.chain is not None or law.reads is not None for law in laws)
         other = best.point if linear else fit(problem, point_at(problem, late, best.point.starts))
-        if _apart(problem, best.point, other) < _ALIKE:
+        if _apart(problem, best.point, other) < ALIKE:
             label = best.names[index]
             names = [name for name in late.names if name not in best.names]
             found[label] = (*found.get(label, ()), " + ".join(names))
