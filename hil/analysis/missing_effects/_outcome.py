@@ -56,7 +56,7 @@ class Outcome:
     """All that `explain_gap` has to say.
 
     `numbers` by name: base, found, standard error. `something_else` is what the model given back leaves of
-    what the numbers alone leave beyond noise, on data not fitted where there are any (0 to 1). `curves` show
+    what the numbers alone leave beyond noise, recordings held out included (0 to 1). `curves` show
     what stays.
     """
 

@@ -1,7 +1,7 @@
 """The verdict: three lines, every term of which the data set.
 
 - `named`: an effect whose confidence is one half or more: the posterior weight of the hypotheses that hold
-  it, times the share of the misfit beyond noise that goes with it on data not fitted.
+  it, times the share of the misfit beyond noise that goes with it, recordings held out included.
 - `none`: numbers alone have half of the weight or more, and what they leave is proven noise.
 - `unknown`: anything else.
 
@@ -39,7 +39,7 @@ _SHOWN = 5  # alternatives
 
 @dataclass(frozen=True)
 class Judged:
-    """A search, and what a candidate leaves: variance on data not fitted, gaps of both kinds of data.
+    """A search, and what a candidate leaves: variance over all data, gaps of both kinds of data.
 
     `asked` is the model as it came.
     """
@@ -150,7 +150,7 @@ def _named(
 
 
 def _remains(of: Judged, before: Candidate, after: Candidate) -> float:
-    """Share of the variance beyond noise that stays on data not fitted."""
+    """Share of the variance beyond noise that stays."""
     problem = of.done.problem
     return remains(of.left(before), of.left(after), problem.noise**2, problem.slow_noise)
 
