@@ -6,6 +6,8 @@
 
 `own` and `real` ask from four bases each. `--new` leaves the one in use out. A line has case, base, truth,
 and of each way: right or wrong, names with confidence, the largest gap left, processor time in seconds.
+Ctrl-C
+ends a run with the figures of what was asked.
 """
 
 from __future__ import annotations
@@ -14,7 +16,7 @@ import argparse
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import pairwise
@@ -137,17 +139,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.new:
         del ways["old"]
     tallies = {who: Tally() for who in ways}
-    for case in _cases(options):
-        cells = [f"{case.name:<34}{case.base:<12}{' + '.join(case.truth) or '-':<34}"]
-        for who, way in ways.items():
-            began = time.process_time()
-            try:
-                answer = way(case)
-            except (HilError, ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
-                answer = {"verdict": f"failed ({str(error)[:60]})", "effects": []}
-            took = time.process_time() - began
-            cells.append(_cell(who, case, answer, took, tallies[who]))
-        print(" | ".join(cells), flush=True)
+    try:
+        for case in _cases(options):
+            _answered(case, ways, tallies)
+    except KeyboardInterrupt:
+        print("stopped; figures of what was asked so far", file=sys.stderr)
     if not next(iter(tallies.values())).right:
         print("no case is there", file=sys.stderr)
         return 2
@@ -155,6 +151,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(tally.line(who))
         print("\n".join(tally.calibration()))
     return 0
+
+
+def _answered(
+    case: Case, ways: Mapping[str, Callable[[Case], dict[str, Any]]], tallies: Mapping[str, Tally]
+) -> None:
+    """Ask each way and print a line."""
+    cells = [f"{case.name:<34}{case.base:<12}{' + '.join(case.truth) or '-':<34}"]
+    for who, way in ways.items():
+        began = time.process_time()
+        try:
+            answer = way(case)
+        except (HilError, ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
+            answer = {"verdict": f"failed ({str(error)[:60]})", "effects": []}
+        took = time.process_time() - began
+        cells.append(_cell(who, case, answer, took, tallies[who]))
+    print(" | ".join(cells), flush=True)
 
 
 def _cell(who: str, case: Case, answer: dict[str, Any], took: float, tally: Tally) -> str:
