@@ -6,8 +6,7 @@
 
 `own` and `real` ask from four bases each. `--new` leaves the one in use out. A line has case, base, truth,
 and of each way: right or wrong, names with confidence, the largest gap left, processor time in seconds.
-Ctrl-C
-ends a run with the figures of what was asked.
+Ctrl-C ends a run with the figures of what was asked.
 """
 
 from __future__ import annotations
