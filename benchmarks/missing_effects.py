@@ -6,6 +6,7 @@
 
 `own` and `real` ask from four bases each. `--new` leaves the one in use out. A line has case, base, truth,
 and of each way: right or wrong, names with confidence, the largest gap left, processor time in seconds.
+Ctrl-C ends a run with the figures of what was asked.
 """
 
 from __future__ import annotations
@@ -14,8 +15,9 @@ import argparse
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -54,7 +56,8 @@ _SAME = {
 class Case:
     """One question: a base, recordings, what is hidden (empty: nothing with a name), how to judge.
 
-    Names in `beside` are neither asked for nor wrong. `off` gives how many standard errors numbers are off.
+    Names in `beside` are neither asked for nor wrong. `off` gives how many standard errors numbers are off,
+    `official` what a model reaches in a public benchmark's own measure.
     """
 
     name: str
@@ -66,6 +69,7 @@ class Case:
     right: Callable[[dict[str, Any]], bool]
     beside: Sequence[str] = ()
     off: Callable[[dict[str, Any]], Sequence[float]] = lambda answer: ()
+    official: Callable[[Model], str] = lambda model: ""
 
 
 @dataclass
@@ -134,17 +138,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.new:
         del ways["old"]
     tallies = {who: Tally() for who in ways}
-    for case in _cases(options):
-        cells = [f"{case.name:<34}{case.base:<12}{' + '.join(case.truth) or '-':<34}"]
-        for who, way in ways.items():
-            began = time.process_time()
-            try:
-                answer = way(case)
-            except (HilError, ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
-                answer = {"verdict": f"failed ({str(error)[:60]})", "effects": []}
-            took = time.process_time() - began
-            cells.append(_cell(who, case, answer, took, tallies[who]))
-        print(" | ".join(cells), flush=True)
+    try:
+        for case in _cases(options):
+            _answered(case, ways, tallies)
+    except KeyboardInterrupt:
+        print("stopped; figures of what was asked so far", file=sys.stderr)
     if not next(iter(tallies.values())).right:
         print("no case is there", file=sys.stderr)
         return 2
@@ -152,6 +150,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(tally.line(who))
         print("\n".join(tally.calibration()))
     return 0
+
+
+def _answered(
+    case: Case, ways: Mapping[str, Callable[[Case], dict[str, Any]]], tallies: Mapping[str, Tally]
+) -> None:
+    """Ask each way and print a line."""
+    cells = [f"{case.name:<34}{case.base:<12}{' + '.join(case.truth) or '-':<34}"]
+    for who, way in ways.items():
+        began = time.process_time()
+        try:
+            answer = way(case)
+        except (HilError, ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
+            answer = {"verdict": f"failed ({str(error)[:60]})", "effects": []}
+        took = time.process_time() - began
+        cells.append(_cell(who, case, answer, took, tallies[who]))
+    print(" | ".join(cells), flush=True)
 
 
 def _cell(who: str, case: Case, answer: dict[str, Any], took: float, tally: Tally) -> str:
@@ -172,7 +186,8 @@ def _cell(who: str, case: Case, answer: dict[str, Any], took: float, tally: Tall
     gaps = answer.get("holdout_gap") or answer.get("gap") or {}
     left = max((100.0 * float(gap["after"]) for gap in gaps.values()), default=float("nan"))
     text = " + ".join(named) or str(answer["verdict"])
-    return f"{who} {'right' if right else 'WRONG'} {text}, {left:.2g} % left, {took:.1f} s"
+    reached = f", {answer['official']}" if answer.get("official") else ""
+    return f"{who} {'right' if right else 'WRONG'} {text}, {left:.2g} % left, {took:.1f} s{reached}"
 
 
 def _label(effect: dict[str, Any]) -> str:
@@ -191,7 +206,10 @@ def _new(case: Case) -> dict[str, Any]:
         back = _gaps(found.model, case.holdout or case.recordings, tuple(gaps))
     except HilError:  # too stiff to be simulated as users do it
         back = dict.fromkeys(gaps, float("inf"))
-    return found.as_json() | {"given_back": [back[name] / gaps[name].after for name in gaps]}
+    return found.as_json() | {
+        "given_back": [back[name] / gaps[name].after for name in gaps],
+        "official": case.official(found.model),
+    }
 
 
 def _gaps(model: Model, recordings: Sequence[Recording], channels: Sequence[str]) -> dict[str, float]:
@@ -273,7 +291,15 @@ def _real(directory: Path, names: Sequence[str]) -> Iterator[Case]:
         for which, model in _bases(start).items():
             right = _exactly(one.hidden, one.beside)
             yield Case(
-                name, which, model, measured.recordings, measured.holdout, one.hidden, right, one.beside
+                name,
+                which,
+                model,
+                measured.recordings,
+                measured.holdout,
+                one.hidden,
+                right,
+                one.beside,
+                official=partial(one.official, one.place(directory)),
             )
 
 

@@ -18,6 +18,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from benchmarks.real_data.ced import CED
 from benchmarks.real_data.embir import EMBIR
 from benchmarks.real_data.emps import EMPS
 from benchmarks.real_data.fditools import FDITOOLS
@@ -29,7 +30,7 @@ from hil.core.errors import HilError
 from hil.core.model import Model, save_model
 from hil.core.recording import Recording, write_recording
 
-DATA_SETS = {one.name: one for one in (EMPS, HSM150, LORENZ, LEXIUM62, EMBIR, *FDITOOLS)}
+DATA_SETS = {one.name: one for one in (EMPS, HSM150, LORENZ, LEXIUM62, EMBIR, *FDITOOLS, CED)}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

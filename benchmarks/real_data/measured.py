@@ -36,7 +36,8 @@ class DataSet:
 
     `files` must be in its directory (`directory`, or one named as it);
     `expected` is what its authors, or a fit by another program, found;
-    `read` makes recordings of the directory; `hidden` must be named, `beside` may be.
+    `read` makes recordings of the directory; `hidden` must be named, `beside` may be; `official` says what a
+    model reaches in the measure of the benchmark that the data are from.
     """
 
     name: str
@@ -46,6 +47,7 @@ class DataSet:
     directory: str = ""
     hidden: tuple[str, ...] = ("coulomb_friction",)
     beside: tuple[str, ...] = ()
+    official: Callable[[Path, Model], str] = lambda directory, model: ""
 
     def place(self, data: Path) -> Path:
         """Where its files are."""

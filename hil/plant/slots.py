@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -94,6 +95,7 @@ for _effect in ACTING:
 PATH_DELAY_S = 1.0
 
 
+@cache
 def place(effect: str, parameter: str) -> int:
     """The slot of an effect's number.
 

@@ -21,8 +21,8 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.missing_effects._hypothesis import Hypothesis
-from hil.analysis.missing_effects._mass import WINDOW_S, Mass, masses_of, window_means
-from hil.analysis.missing_effects._orders import FINE, over_angle, peaks
+from hil.analysis.missing_effects._mass import WINDOW_S, Mass, mass_of, window_means
+from hil.analysis.missing_effects._orders import FINE, PERIODS, over_angle, peaks
 from hil.analysis.missing_effects._series import Series
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
@@ -32,7 +32,6 @@ Array = npt.NDArray[np.float64]
 
 _HIGHEST = 40.0  # order
 _NEAR = 0.25 * np.arange(-8, 9)  # widths of a peak, which what stands beside it moves
-_PERIODS = 2.0  # of a ripple that a recording must hold
 _PEAKS = 2  # orders of turning that are tried
 
 
@@ -48,18 +47,18 @@ class Reading:
 def readings(hypothesis: Hypothesis, series: Sequence[Series]) -> list[Reading]:
     """Hypotheses with one further effect that acts on a mass, the likeliest first.
 
-    Only those whose laws take more off the torque's impulse than their numbers cost. Of a chain with shafts
-    numbers stay what they are, and sizes are read.
+    Only those whose laws take more off the torque's impulse than their numbers cost. None for chains with
+    shafts.
     """
+    mass = mass_of(hypothesis.kind, series, hypothesis.numbers["gear_ratio"])
+    alone = _read(mass, hypothesis) if mass else None
+    if mass is None or alone is None:
+        return []
     found: list[tuple[float, Reading]] = []
-    for mass in masses_of(hypothesis.kind, series, hypothesis.numbers["gear_ratio"]):
-        alone = _read(mass, hypothesis)
-        if alone is None:
-            continue
-        for wider in _wider(mass, alone.hypothesis):
-            reading = _read(mass, wider)
-            if reading is not None and (gain := _gain(mass, alone, reading)) > 0.0:
-                found.append((gain, replace(reading, left=reading.left / alone.left)))
+    for wider in _wider(mass, alone.hypothesis):
+        reading = _read(mass, wider)
+        if reading is not None and (gain := _gain(mass, alone, reading)) > 0.0:
+            found.append((gain, replace(reading, left=reading.left / alone.left)))
     return [one for _, one in sorted(found, key=lambda pair: -pair[0])]
 
 
@@ -112,21 +111,19 @@ def _orders(mass: Mass, hypothesis: Hypothesis) -> list[float]:
 
     power = np.abs(over_angle(rest, np.concatenate(middles), round(_HIGHEST / FINE)))
     orders = FINE * np.arange(1.0, len(power) + 1.0, dtype=np.float64)
-    power[orders * turns < _PERIODS] = 0.0
+    power[orders * turns < PERIODS] = 0.0
     found = []
     for peak in peaks(orders, power, 2 * _PEAKS):
-        near = [one for one in peak + _NEAR / turns if one * turns >= _PERIODS]
+        near = [one for one in peak + _NEAR / turns if one * turns >= PERIODS]
         best = max(near, key=drop)
         found.append((drop(best), float(best)))
     return [order for _, order in sorted(found, reverse=True)[:_PEAKS]]
 
 
 def _regression(mass: Mass, hypothesis: Hypothesis) -> tuple[Array, Array, list[tuple[int, str, float]]]:
-    """Columns (inertias, a rigid model's drag, sizes), impulse of torque, (term, number, phase) of sizes."""
+    """Columns (inertia, drag, sizes), impulse of torque, (term, number, phase) of sizes."""
     chain = chain_numbers(hypothesis.base)
-    columns = [mass.windowed(speeds, sums=False) for speeds in mass.turning()]
-    if mass.part == "rigid":
-        columns.append(mass.windowed(mass.turning()[0], sums=True))
+    columns = [mass.windowed(mass.speeds(), sums=sums) for sums in (False, True)]
     sizes: list[tuple[int, str, float]] = []
     for index, use in enumerate(hypothesis.terms):
         effect = EFFECTS[use.id]
@@ -152,8 +149,7 @@ def _solved(mass: Mass, columns: Array, right: Array) -> Array:
     """
     scale = np.maximum(np.max(np.abs(columns), axis=0), 1e-300)
     normal = (columns / scale).T @ (columns / scale)
-    for place, noise in enumerate(mass.noise_rad_s):
-        normal[place, place] -= 2.0 * len(right) * (noise / scale[place]) ** 2
+    normal[0, 0] -= 2.0 * len(right) * (mass.noise_rad_s / scale[0]) ** 2
     return np.asarray(np.linalg.lstsq(normal, (columns / scale).T @ right, rcond=1e-12)[0] / scale)
 
 
@@ -161,13 +157,10 @@ def _read(mass: Mass, hypothesis: Hypothesis) -> Reading | None:
     """Numbers of a hypothesis by the regression; None where they are not physical."""
     columns, right, places = _regression(mass, hypothesis)
     found = _solved(mass, columns, right)
-    inertias = len(mass.noise_rad_s)
-    if np.any(found[:inertias] <= 0.0):
+    if found[0] <= 0.0:
         return None
     rest = right - columns @ found
-    numbers, sizes = hypothesis.numbers, found[inertias:]
-    if mass.part == "rigid":
-        numbers, sizes = _as_one_mass(hypothesis.base, found[0], max(found[1], 0.0)), found[2:]
+    numbers, sizes = _as_one_mass(hypothesis.base, found[0], max(found[1], 0.0)), found[2:]
     terms = [dict(use.values) for use in hypothesis.terms]
     for (index, name, phase), size in zip(places, sizes.tolist(), strict=True):
         limits = EFFECTS[hypothesis.terms[index].id].parameter(name)
@@ -200,10 +193,9 @@ def latent_torque(hypothesis: Hypothesis, series: Sequence[Series]) -> tuple[Arr
 
     One value a window: (windows,) each. None for chains with shafts, or without a speed.
     """
-    masses = masses_of(hypothesis.kind, series, hypothesis.numbers["gear_ratio"])
-    if hypothesis.kind != "rigid" or not masses:
+    mass = mass_of(hypothesis.kind, series, hypothesis.numbers["gear_ratio"])
+    if mass is None:
         return None
-    mass = masses[0]
     columns, impulse, places = _regression(mass, hypothesis)
     numbers = hypothesis.numbers
     inertia = numbers["motor_inertia"] + numbers["vehicle_inertia"] / numbers["gear_ratio"] ** 2
@@ -225,8 +217,8 @@ def read_numbers(model: Model, series: Sequence[Series]) -> Hypothesis | None:
     """The numbers alone as the balance reads them beside dry friction and an offset."""
     alone = Hypothesis(model, dict(model.parameters))
     friction = alone.with_term(EffectUse("coulomb_friction", {"torque_nm": 1.0}), frozenset({"offset_nm"}))
-    masses = masses_of(model.kind, series, model.parameters["gear_ratio"])
-    if model.kind != "rigid" or not masses or any(use.id == "coulomb_friction" for use in model.effects):
+    mass = mass_of(model.kind, series, model.parameters["gear_ratio"])
+    if mass is None or any(use.id == "coulomb_friction" for use in model.effects):
         return None
-    found = _read(masses[0], friction)
+    found = _read(mass, friction)
     return None if found is None else replace(alone, numbers=found.hypothesis.numbers)

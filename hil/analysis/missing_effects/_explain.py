@@ -85,8 +85,13 @@ class _Shown:
         return with_better_starts(problem, point_at(problem, hypothesis))
 
     def left(self, candidate: Candidate) -> Array:
-        """Mean square of errors in each channel on data not fitted, (3,); NaN if not recorded."""
-        return self.unseen.mean_square(self.point(self.unseen, candidate.point.hypothesis).errors)
+        """Mean square of errors in each channel over all recordings, (3,); NaN if not recorded.
+
+        Recordings held out count along; alone, they would judge effects that they do not excite.
+        """
+        hypothesis = candidate.point.hypothesis
+        both = (self.problem,) if self.unseen is self.problem else (self.problem, self.unseen)
+        return self.problem.mean_square([e for one in both for e in self.point(one, hypothesis).errors])
 
     def gaps(self, problem: Problem, best: Candidate) -> dict[str, Gap]:
         """Of the base, the numbers alone and the best hypothesis."""

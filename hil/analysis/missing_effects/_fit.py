@@ -26,6 +26,8 @@ _START_ROUNDS = 3
 _DAMPING = 1e-3  # of the normal equations' diagonal, at first
 _SETTLED = 1e-5  # of the cost: a step that brings less is the last one
 _SMALLEST = 1e-6  # step of a coordinate
+ROUNDS = 6
+"""Of a fit at most, each with the weights that the one before left."""
 EVALUATIONS = 12  # of a round: the next one has better starts and weights
 
 
@@ -97,7 +99,9 @@ def point_at(problem: Problem, hypothesis: Hypothesis, starts: Sequence[Array] |
 def with_better_starts(problem: Problem, point: Point) -> Point:
     """The same hypothesis from the starts that suit the data best."""
     for _ in range(_START_ROUNDS):
-        point = point_at(problem, point.hypothesis, _better_starts(problem, point.hypothesis, point.starts))
+        directions = [problem.start_basis(i, point.hypothesis, s) for i, s in enumerate(point.starts)]
+        better = _better_starts(problem, point.hypothesis, point.starts, directions)
+        point = point_at(problem, point.hypothesis, better)
     return point
 
 
@@ -113,7 +117,7 @@ def fit(
     coordinates = [one for one in problem.coordinates(hypothesis) if one.term >= 0 or one.name not in held]
     round_ = _Round(problem, hypothesis, point.starts, coordinates)
     hypothesis = hypothesis.moved(coordinates, least_squares(round_, *bounds_of(coordinates), evaluations))
-    return point_at(problem, hypothesis, _better_starts(problem, hypothesis, point.starts))
+    return point_at(problem, hypothesis, _better_starts(problem, hypothesis, point.starts, round_.directions))
 
 
 def least_squares(round_: Descent, lower: Array, upper: Array, evaluations: int) -> Array:
@@ -182,7 +186,8 @@ class _Round:
     ) -> None:
         self.problem, self.hypothesis = problem, hypothesis
         self.states, self.coordinates = states, coordinates
-        self.bases = [problem.start_basis(i, hypothesis, s)[2] for i, s in enumerate(states)]
+        self.directions = [problem.start_basis(i, hypothesis, s) for i, s in enumerate(states)]
+        self.bases = [basis for _, _, basis in self.directions]
 
     def residual(self, u: Array) -> Array:
         packed = [self.hypothesis.moved(self.coordinates, u).packed()]
@@ -207,11 +212,15 @@ def without(basis: Array, values: Array) -> Array:
     return np.asarray(values - basis @ (basis.T @ values))
 
 
-def _better_starts(problem: Problem, hypothesis: Hypothesis, states: Sequence[Array]) -> list[Array]:
-    """Starts that suit the data best, to first order."""
+def _better_starts(
+    problem: Problem,
+    hypothesis: Hypothesis,
+    states: Sequence[Array],
+    directions: Sequence[tuple[Array, Array, Array]],
+) -> list[Array]:
+    """Starts that suit the data best, to first order, by the errors' change along their directions."""
     better = []
-    for index, state in enumerate(states):
-        change, sizes, _ = problem.start_basis(index, hypothesis, state)
+    for index, (state, (change, sizes, _)) in enumerate(zip(states, directions, strict=True)):
         shown = problem.simulated(index, [hypothesis.packed()], state[None])
         error = problem.weighed(index, problem.series[index].measured - shown)[0]
         moves = np.linalg.lstsq(change, error, rcond=1e-7)[0]

@@ -104,8 +104,11 @@ class Hypothesis:
     def _number(self, name: str, scales: Mapping[str, float]) -> Coordinate:
         value, base = float(self.numbers[name]), float(self.base.parameters[name])
         if name in scales:  # may be zero
-            highest = _LONGEST_DELAY_S if name == "torque_delay" else math.inf
-            return Coordinate(-1, name, value, scales[name], False, 0.0, highest)
+            if name != "torque_delay":
+                return Coordinate(-1, name, value, scales[name], False, 0.0, math.inf)
+            # a rigid axle's shaft torque steps from sample to sample: its slope is seen over a whole one
+            step = 1.0 if self.base.kind == "rigid" else 1e-3
+            return Coordinate(-1, name, value, scales[name], False, 0.0, _LONGEST_DELAY_S, step=step)
         tolerance = self.base.tolerance.get(name, TOLERANCE)
         return Coordinate(-1, name, value, 1.0, True, value * 1e-3, value * 1e3, base, tolerance=tolerance)
 

@@ -15,8 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.missing_effects._fit import bounds_of, least_squares
+from hil.analysis.missing_effects._fit import ROUNDS, bounds_of, least_squares
 from hil.analysis.missing_effects._hypothesis import Coordinate, Hypothesis
+from hil.analysis.missing_effects._odds import ALIKE
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import Scene, may_join, probes_of
 from hil.analysis.missing_effects._series import Series
@@ -31,10 +32,8 @@ ComplexArray = npt.NDArray[np.complex128]
 _DRAWS = 200  # starts whose responses are looked at
 _STARTS = 3  # of these are fitted
 _SPREAD = np.log(3.0)  # of a start's numbers, as of their prior
-_ROUNDS = 5  # of weights
 _EVALUATIONS = 20
 _STEP = 1e-5  # of a coordinate, for derivatives
-_FAR_GAIN = 3.0  # of log likelihood by other starts than the base: 20 : 1
 _FAR = 3.0  # logarithm of a response's misfit, beyond which all are alike
 
 
@@ -81,7 +80,7 @@ class Responses:
             away = np.abs(np.log(self.response(hypothesis) / self.found))
         return float(np.sum(weight * np.minimum(np.nan_to_num(away, nan=_FAR), _FAR) ** 2) / np.sum(weight))
 
-    def fitted(self, hypothesis: Hypothesis, rounds: int = _ROUNDS) -> Hypothesis:
+    def fitted(self, hypothesis: Hypothesis, rounds: int = ROUNDS) -> Hypothesis:
         """Numbers that suit the responses best, from those of a hypothesis."""
         best, reached = hypothesis, self.log_likelihood(hypothesis)
         for _ in range(rounds):
@@ -118,7 +117,7 @@ class _Descent:
         """Of the residual, by finite differences."""
         at = self.residual(u)
         steps = [
-            1e-5 if one.at(v + 1e-5) <= one.upper else -1e-5
+            _STEP if one.at(v + _STEP) <= one.upper else -_STEP
             for one, v in zip(self.coordinates, u, strict=True)
         ]
         return np.column_stack(
@@ -178,7 +177,7 @@ def structures(problem: Problem) -> list[Hypothesis]:
     near = responses.fitted(base)
     alone = max((near, _best(responses, _scattered(responses, [base]))), key=responses.log_likelihood)
     found = [(0.0, alone)]
-    if responses.log_likelihood(alone) - responses.log_likelihood(near) < _FAR_GAIN:
+    if responses.log_likelihood(alone) - responses.log_likelihood(near) < ALIKE:
         return [near]
     for effect in EFFECTS.values():
         if effect.law.chain is None or not may_join(effect, alone):

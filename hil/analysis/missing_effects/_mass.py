@@ -1,15 +1,10 @@
-"""A mass whose momentum is balanced: which speeds turn it, what drives it, which laws brake it.
-
-A rigid axle is one mass. Of a chain it is the rotor, where the shaft torque was measured; the load, where
-that and its speed were; and both together, where both speeds were and no torque between them.
-"""
+"""A turning mass whose momentum is balanced: which speed turns it, what drives it, which laws brake it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -20,7 +15,6 @@ from hil.core.chain import Chain
 from hil.core.effects import Effect, Motion
 
 Array = npt.NDArray[np.float64]
-Part = Literal["rigid", "rotor", "load", "chain"]
 
 WINDOW_S = 0.1
 """Of impulses: long against a block and a dead time, short against what drag does."""
@@ -29,24 +23,19 @@ _QUIET = 1e-3  # of the largest speed: below it the sign of a speed is not known
 
 @dataclass(frozen=True)
 class Mass:
-    """Momentum balance of all recordings; torques on the rotor side, those of the load on the wheel side."""
+    """Momentum balance of a rigid axle over all recordings, on the rotor side."""
 
     series: tuple[Series, ...]
     ratio: float
-    part: Part
 
     @cached_property
-    def noise_rad_s(self) -> tuple[float, ...]:
-        """Proven noise of a block mean of each of `turning`."""
+    def noise_rad_s(self) -> float:
+        """Proven noise of a block mean of the speed."""
         motor, wheel, _ = proven_noise(self.series, {})
-        if self.part == "chain":
-            return float(motor), float(wheel / self.ratio)
-        if self.part == "load":
-            return (float(wheel),)
-        return (float(motor if np.isfinite(motor) else wheel * self.ratio),)
+        return float(motor if np.isfinite(motor) else wheel * self.ratio)
 
-    def motor(self, one: Series) -> Array:
-        """Rotor speed in rad/s at block means."""
+    def speed(self, one: Series) -> Array:
+        """Of the rotor in rad/s at block means."""
         measured = one.measured
         return np.asarray(measured[:, 0] if one.has[0] else measured[:, 1] * self.ratio)
 
@@ -54,38 +43,20 @@ class Mass:
         """Wheel speed in rad/s at block means."""
         return np.asarray(one.measured[:, 1] if one.has[1] else one.measured[:, 0] / self.ratio)
 
-    def speed(self, one: Series) -> Array:
-        """Of the side that the balance stands on."""
-        return self.wheel(one) if self.part == "load" else self.motor(one)
-
     def angle(self, one: Series) -> Array:
-        """Angle in rad of that side at block means."""
-        first = one.first_wheel_angle_rad * (1.0 if self.part == "load" else self.ratio)
-        return np.asarray(first + np.cumsum(self.speed(one)) / one.rate_hz)
+        """Of the rotor in rad at block means."""
+        return np.asarray(one.first_wheel_angle_rad * self.ratio + np.cumsum(self.speed(one)) / one.rate_hz)
 
-    def turning(self) -> list[list[Array]]:
-        """Speeds that inertias go with, each of all recordings."""
-        found = [[self.speed(one) for one in self.series]]
-        if self.part == "chain":
-            found.append([self.wheel(one) / self.ratio for one in self.series])
-        return found
+    def speeds(self) -> list[Array]:
+        """Of the rotor in all recordings."""
+        return [self.speed(one) for one in self.series]
 
     def driving(self) -> list[Array]:
         """Torque in N m that acts on the mass in each recording, at block means."""
         found = []
         for one in self.series:
-            shaft, brake = one.measured[:, 2], np.zeros(len(one.measured))
-            if one.load is not None:
-                brake = block_means(one, one.load)
-            torque = block_means(one, one.torque)
-            found.append(
-                {
-                    "rigid": torque - brake / self.ratio,
-                    "chain": torque - brake / self.ratio,
-                    "rotor": torque - shaft / self.ratio,
-                    "load": shaft - brake,
-                }[self.part]
-            )
+            brake = np.zeros(len(one.measured)) if one.load is None else block_means(one, one.load)
+            found.append(block_means(one, one.torque) - brake / self.ratio)
         return found
 
     def windowed(self, values: Sequence[Array], *, sums: bool) -> Array:
@@ -101,10 +72,7 @@ class Mass:
     def braked_by(self, effect: Effect) -> bool:
         """Whether an effect's torque is in this balance."""
         law = effect.law
-        on_rotor = law.dry is not None or law.loss is not None
-        if self.part == "load":
-            return law.load is not None
-        return on_rotor or (self.part != "rotor" and law.load is not None)
+        return any(one is not None for one in (law.dry, law.loss, law.load))
 
     def column(self, effect: Effect, values: dict[str, float | str], chain: Chain) -> Array:
         """Impulse of an effect's torque against positive motion."""
@@ -112,9 +80,8 @@ class Mass:
 
     def _torque(self, one: Series, effect: Effect, values: dict[str, float | str], chain: Chain) -> Array:
         numbers = tuple(float(values[p.name]) for p in effect.parameters)
-        motor, wheel = self.motor(one), self.wheel(one)
+        motor, wheel, angle = self.speed(one), self.wheel(one), self.angle(one)
         law, total = effect.law, np.zeros(len(motor))
-        angle = self.angle(one) * (self.ratio if self.part == "load" else 1.0)
         known = np.abs(motor) > _QUIET * float(np.max(np.abs(motor)))
         motions = [
             Motion(w, v, v, 0.0, 0.0, 0.0, 0.0, a, a / self.ratio)
@@ -125,24 +92,14 @@ class Mass:
         if law.loss is not None:
             total += np.array([law.loss(m, chain, 0.0, numbers) for m in motions])
         if law.load is not None:
-            side = 1.0 if self.part == "load" else self.ratio
-            total += np.array([law.load(m, chain, 0.0, numbers) for m in motions]) / side
+            total += np.array([law.load(m, chain, 0.0, numbers) for m in motions]) / self.ratio
         return total
 
 
-def masses_of(kind: str, series: Sequence[Series], ratio: float) -> list[Mass]:
-    """The masses of a model whose momentum the recordings give."""
-    has = np.all([one.has for one in series], axis=0)
-    parts: list[Part] = []
-    if kind == "rigid" and any(one.has[:2].any() for one in series):
-        series = [one for one in series if one.has[:2].any()]
-        parts = ["rigid"]
-    elif kind != "rigid" and has[2]:
-        parts = ["rotor"] if has[0] else []
-        parts += ["load"] if has[1] and kind == "two_inertia" else []
-    elif kind == "two_inertia" and has[0] and has[1]:
-        parts = ["chain"]
-    return [Mass(tuple(series), ratio, part) for part in parts]
+def mass_of(kind: str, series: Sequence[Series], ratio: float) -> Mass | None:
+    """The mass of a rigid model; None for chains with shafts, or without a speed."""
+    moving = tuple(one for one in series if one.has[:2].any())
+    return Mass(moving, ratio) if kind == "rigid" and moving else None
 
 
 def block_means(one: Series, values: Array) -> Array:

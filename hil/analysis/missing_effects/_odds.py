@@ -22,6 +22,8 @@ from hil.analysis.missing_effects._fit import Point
 Array = npt.NDArray[np.float64]
 
 _DRAWS = 1000
+ALIKE = log(20.0)
+"""Two hypotheses are alike where the data would give the right one odds below 20:1."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,9 @@ class Candidate:
 
 
 def remains(had: Array, has: Array, noise: Array, slow: float) -> float:
-    """Share of the variance beyond noise that stays, mean of the channels; those near their noise count less.
+    """Share of the variance beyond noise that stays, mean of channels; those with little count less.
+
+    Where all that stays may be slow noise, nothing stays if what was taken off is more than that.
 
     Args:
         had: mean square of errors before, (3,); NaN where a channel was not recorded.
@@ -63,13 +67,17 @@ def remains(had: Array, has: Array, noise: Array, slow: float) -> float:
         noise: variance of proven noise, (3,).
         slow: how many times that may be slow noise, which no name takes off.
     """
-    before, after = had - slow * noise, np.maximum(has - slow * noise, 0.0)
-    there = np.isfinite(before) & (before > 0.0)
-    if not there.any():
-        return 1.0
-    weight = np.minimum(before[there] / noise[there], 1.0)
-    share = np.minimum(after[there] / before[there], 2.0)
-    return float(min(np.sum(weight * share) / np.sum(weight), 1.0))
+    there = np.isfinite(had)
+    had, has, noise = had[there], has[there], noise[there]
+    off, rest = had - has, np.maximum(has - slow * noise, 0.0)
+    if not rest.any():
+        unproven = float(np.sum(np.maximum(has - noise, 0.0) / noise))
+        taken = float(np.sum(off / noise))
+        return 0.0 if taken > unproven else min(unproven / max(taken + unproven, 1e-300), 1.0)
+    whole = off + rest
+    weight = np.minimum(np.maximum(whole, rest) / noise, 1.0)
+    share = np.minimum(rest / np.maximum(whole, 1e-300), 2.0)
+    return float(min(np.sum(np.maximum(weight, 0.0) * share) / np.sum(np.maximum(weight, 0.0)), 1.0))
 
 
 def weights_of(candidates: Sequence[Candidate], values: float) -> Array:

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._fit import Point
 from hil.analysis.missing_effects._problem import Problem
+from hil.analysis.missing_effects._spectrum import SEGMENT_S, white
 from hil.plant import linear_system_of
 
 Array = npt.NDArray[np.float64]
@@ -21,37 +22,49 @@ Array = npt.NDArray[np.float64]
 _HIGHEST = 60.0  # order
 FINE = 0.02
 """Distance of orders that are looked at."""
-_PERIODS = 2.0  # of a ripple that a recording must hold
-_COUNT = 3
+PERIODS = 2.0
+"""Of a ripple that a recording must hold."""
+_COUNT = 4
 _SOURCES = {"wheel": "extra_shaft_torque_nm", "rotor": "rotor_loss_nm"}
 
 
 def orders_of(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) -> list[float]:
-    """The most promising orders, best first; none where nothing turns."""
+    """The most promising orders, by weights of the misfit and by those of noise; none where nothing turns.
+
+    A ripple that is most of the misfit makes its own octaves weigh little.
+    """
+    by_noise = problem.weighed_by(white(problem.noise, problem.rate_hz))
+    found = [_orders_by(one, point, side) for one in (problem, by_noise)]
+    return list(dict.fromkeys(found[0] + found[1]))
+
+
+def _orders_by(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) -> list[float]:
     system = linear_system_of(point.hypothesis.packed()[0])
     orders = np.arange(FINE, _HIGHEST, FINE)
     slopes, energy = np.zeros(len(orders), complex), np.zeros(len(orders))
     for index, one in enumerate(problem.series):
-        error = np.where(one.has, np.nan_to_num(point.errors[index]), 0.0)
+        error = point.errors[index]
         count = len(error)
         frequency: Array = np.fft.rfftfreq(count, 1.0 / one.rate_hz).astype(np.float64)
         response = np.zeros((3, len(frequency)), complex)
-        response[:, 1:] = system.response(frequency[1:], _SOURCES[side])
-        weight = np.where(
-            one.has[:, None], problem.spectrum.weights(count, one.rate_hz).T ** 2 * 2.0 / count, 0.0
-        )
-        weight = np.nan_to_num(weight) * 2.0 / count
-        back = np.sum(np.conj(response) * weight * np.fft.rfft(error, axis=0).T, axis=0)
-        pushed = np.fft.irfft(back, count)
-        gain = np.sum(np.abs(response) ** 2 * weight, axis=0)
+        fast = frequency > 1.0 / SEGMENT_S  # what is slower the starts of windows take up
+        response[:, fast] = system.response(frequency[fast], _SOURCES[side])
+        weight = problem.spectrum.weights(count, one.rate_hz).T ** 2
+        slope = problem.spectrum.sent_back(np.nan_to_num(error[:, one.has]), one.has, one.rate_hz)
+        back = np.sum(np.conj(response[one.has]) * np.fft.rfft(slope, axis=0).T, axis=0)
+        gain = np.sum(np.abs(response[one.has]) ** 2 * weight[one.has], axis=0)
         angle = problem.angles[index][: count * one.block, 0 if side == "wheel" else 1]
         angle = angle.reshape(count, one.block).mean(axis=1)
-        slopes += over_angle(pushed, angle, len(orders))
         speed = np.abs(np.gradient(angle)) * one.rate_hz / (2 * np.pi)
+        # a ripple faster than errors are sampled must not look like a slow one
+        finer = int(np.ceil(2.0 * _HIGHEST * np.max(speed) / one.rate_hz)) + 1
+        at = np.arange(count * finer) / finer
+        pushed = np.fft.irfft(back, count * finer) * finer
+        slopes += over_angle(pushed, np.interp(at, np.arange(count), angle), len(orders)) / finer
         energy += _energy(speed, orders, frequency, gain)
-    promise = np.abs(slopes) ** 2 / np.maximum(energy, np.max(energy, initial=0.0) * 1e-3 + 1e-300)
+    promise = np.abs(slopes) ** 2 / np.maximum(energy, np.max(energy, initial=0.0) * 1e-9 + 1e-300)
     turns = max(float(np.ptp(angle)) for angle in _angles(problem, side)) / (2 * np.pi)
-    return peaks(orders, np.where(orders * turns >= _PERIODS, promise, 0.0), _COUNT)
+    return peaks(orders, np.where(orders * turns >= PERIODS, promise, 0.0), _COUNT)
 
 
 def _angles(problem: Problem, side: str) -> list[Array]:

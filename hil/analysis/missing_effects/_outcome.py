@@ -82,7 +82,7 @@ class Outcome:
     """All that `explain_gap` has to say.
 
     `numbers` by name: base, found, standard error. `something_else` is what the model given back leaves of
-    what the numbers alone leave beyond noise, on data not fitted where there are any (0 to 1). `curves` show
+    what the numbers alone leave beyond noise, recordings held out included (0 to 1). `curves` show
     what stays. `noise` (3,) is the proven standard deviation of one sample, NaN where a channel was not
     recorded. `as_likely` are models drawn from what the fit knows of its numbers.
     """

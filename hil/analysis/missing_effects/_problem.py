@@ -199,7 +199,7 @@ def _scales(model: Model, series: Sequence[Series]) -> dict[str, float]:
     torque = float(np.sqrt(np.mean([np.mean(one.torque**2) for one in series])))
     speeds = [np.nanmean(one.samples[:, 0] ** 2) for one in series if one.has[0]]
     speed = float(np.sqrt(np.mean(speeds))) if speeds else 1.0
-    scales = {"torque_delay": 1.0 / series[0].rate_hz, "viscous_drag": torque / max(speed, 1e-12)}
+    scales = {"torque_delay": series[0].dt, "viscous_drag": torque / max(speed, 1e-12)}
     load = numbers.get("wheel_inertia", numbers.get("vehicle_inertia", 1.0))
     for part in ("shaft", "tyre"):
         if f"{part}_stiffness" in numbers:

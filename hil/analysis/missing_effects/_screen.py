@@ -9,7 +9,7 @@ optimum each, no search over simulations.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -30,6 +30,7 @@ Array = npt.NDArray[np.float64]
 
 #: Effects that are a change of a number which a base may have, and which is free there.
 _NUMBERS = {"dead_time": "torque_delay", "viscous_drag": "viscous_drag"}
+_AT_ONCE = 24  # simulations
 _SWEEPS = 20  # of coordinate descent over at most two bounded factors
 
 
@@ -83,21 +84,43 @@ class Scene:
 
 def promises(problem: Problem, at: Linearised) -> list[Promise]:
     """All sizes of every effect that may be added to a point, each with what it promises."""
-    scene = Scene(problem, at.point.hypothesis, at.point)
+    hypothesis = at.point.hypothesis
     project = _Projection(problem, at)
-    whole = 0.5 * float(at.left @ at.left)
     found: list[Promise] = []
+    for some in _together(_asked(Scene(problem, hypothesis, at.point))):
+        alone = project.products([hypothesis.with_term(use) for uses, _ in some for use in uses])
+        first = 0
+        for uses, probe in some:
+            which, first = slice(first, first + len(uses)), first + len(uses)
+            factors, drop, u = project.explained(alone, which, probe.directions)
+            use = EffectUse(uses[0].id, dict(probe.start(factors)))
+            gain = _gain(drop, 0.5 * float(at.left @ at.left))
+            found.append(Promise(use, at.point, gain, hypothesis.moved(at.coordinates, u)))
+    return found
+
+
+def _asked(scene: Scene) -> Iterator[tuple[list[EffectUse], Probe]]:
+    """All sizes of the effects that may join, with the uses whose changes add up to each."""
     for effect in EFFECTS.values():
-        if may_join(effect, at.point.hypothesis):
+        if may_join(effect, scene.hypothesis):
             for probe in probes_of(effect, scene):
                 uses = [EffectUse(effect.id, dict(one.values)) for one in probe.directions]
-                if any(label_of(use) in at.point.hypothesis.names for use in uses):
-                    continue
-                factors, drop, u = project.explained(uses, probe.directions)
-                use = EffectUse(effect.id, dict(probe.start(factors)))
-                moved = at.point.hypothesis.moved(at.coordinates, u)
-                found.append(Promise(use, at.point, _gain(drop, whole), moved))
-    return found
+                if not {label_of(use) for use in uses} & {*scene.hypothesis.names}:
+                    yield uses, probe
+
+
+def _together(
+    asked: Iterable[tuple[list[EffectUse], Probe]],
+) -> Iterator[list[tuple[list[EffectUse], Probe]]]:
+    """As many as are simulated at once."""
+    some: list[tuple[list[EffectUse], Probe]] = []
+    for one in asked:
+        some.append(one)
+        if sum(len(uses) for uses, _ in some) >= _AT_ONCE:
+            yield some
+            some = []
+    if some:
+        yield some
 
 
 def _gain(drop: float, whole: float) -> float:
@@ -140,55 +163,77 @@ def _size(effect: Effect, scene: Scene) -> float:
     return torque if effect.parameters[0].unit == "N m" else torque / max(speed, 1e-9)
 
 
+@dataclass(frozen=True)
+class _Products:
+    """Of weighed changes by hypotheses: with each other, with the misfit, with the numbers' slopes.
+
+    The first two are of what is left beside the numbers: k x k, (k,), and coordinates x k.
+    """
+
+    normal: Array
+    right: Array
+    by_numbers: Array
+
+
 class _Projection:
     """Simulates additions to a fitted hypothesis and leaves what its numbers and starts cannot do."""
 
     def __init__(self, problem: Problem, at: Linearised) -> None:
         self.problem, self.at = problem, at
-        self.slopes = at.slopes
+        self.squares = at.slopes.T @ at.slopes
+        self.misfit = at.slopes.T @ at.left
         self.plain = [
             problem.simulated(i, [at.point.hypothesis.packed()], s[None])[0]
             for i, s in enumerate(at.point.starts)
         ]
 
-    def changes(self, hypotheses: Sequence[Hypothesis]) -> Array:
-        """Weighed changes (numbers x hypotheses) beside what numbers and starts could do."""
-        d = self._alone(hypotheses)
-        return np.asarray(d - self.slopes @ (self.at.covariance @ (self.slopes.T @ d)))
-
-    def _alone(self, hypotheses: Sequence[Hypothesis]) -> Array:
+    def products(self, hypotheses: Sequence[Hypothesis]) -> _Products:
+        """Of the changes that hypotheses make, recording by recording."""
         packed = [one.packed() for one in hypotheses]
-        parts = []
+        count, first = len(packed), 0
+        normal, right = np.zeros((count, count)), np.zeros(count)
+        by_numbers = np.zeros((len(self.at.coordinates), count))
         for index, start in enumerate(self.at.point.starts):
-            shown = self.problem.simulated(index, packed, np.repeat(start[None], len(packed), axis=0))
+            shown = self.problem.simulated(index, packed, np.repeat(start[None], count, axis=0))
             change = self.problem.weighed(index, shown - self.plain[index])
-            parts.append(without(self.at.bases[index], change.T))
-        return np.concatenate([*parts, np.zeros((len(self.at.coordinates), len(hypotheses)))])
+            change = without(self.at.bases[index], change.T)
+            here, first = slice(first, first + len(change)), first + len(change)
+            normal += change.T @ change
+            right += change.T @ self.at.left[here]
+            by_numbers += self.at.slopes[here].T @ change
+        taken = self.at.covariance @ by_numbers
+        both = by_numbers.T @ taken
+        normal += taken.T @ self.squares @ taken - both - both.T
+        return _Products(normal, right - taken.T @ self.misfit, by_numbers)
 
     def explained(
-        self, uses: Sequence[EffectUse], directions: Sequence[Direction]
+        self, of: _Products, which: slice, directions: Sequence[Direction]
     ) -> tuple[list[float], float, Array]:
-        """Factors of the directions within bounds, the drop that they bring, and moves of the numbers."""
-        alone = self._alone([self.at.point.hypothesis.with_term(use) for use in uses])
-        if not np.all(np.isfinite(alone)):
-            return [1.0] * len(uses), -math.inf, np.zeros(len(self.at.coordinates))
-        d = alone - self.slopes @ (self.at.covariance @ (self.slopes.T @ alone))
-        normal, right = d.T @ d, d.T @ self.at.left
-        factors = np.clip(np.ones(len(uses)), [o.lower for o in directions], [o.upper for o in directions])
-        for _ in range(_SWEEPS if len(uses) > 1 else 1):
+        """Factors of the directions within bounds, the drop that they bring, and moves of the numbers.
+
+        Args:
+            which: of the hypotheses, the directions at their size.
+        """
+        normal, right = of.normal[which, which], of.right[which]
+        if not np.all(np.isfinite(normal)):
+            return [1.0] * len(directions), -math.inf, np.zeros(len(self.at.coordinates))
+        factors = np.clip(
+            np.ones(len(directions)), [o.lower for o in directions], [o.upper for o in directions]
+        )
+        for _ in range(_SWEEPS if len(directions) > 1 else 1):
             for i, one in enumerate(directions):
                 rest = right[i] - normal[i] @ factors + normal[i, i] * factors[i]
                 factors[i] = min(max(rest / max(normal[i, i], 1e-300), one.lower), one.upper)
         drop = float(factors @ right - 0.5 * factors @ normal @ factors)
-        moves = self.at.covariance @ (self.slopes.T @ (alone @ factors - self.at.left))
+        moves = self.at.covariance @ (of.by_numbers[:, which] @ factors - self.misfit)
         return factors.tolist(), drop, np.clip(moves, -1.0, 1.0)  # a factor e at most
 
 
 def promised_by(problem: Problem, at: Linearised, hypotheses: Sequence[Hypothesis]) -> list[float]:
     """Growth of log L that neighbours of a point promise to first order, of about their sizes."""
     project = _Projection(problem, at)
-    d = project.changes(hypotheses)
-    squares, right = np.sum(d * d, axis=0), d.T @ at.left
+    of = project.products(hypotheses)
+    squares, right = np.diag(of.normal), of.right
     factors = np.clip(right / np.maximum(squares, 1e-300), *STRETCH)
     drops = np.where(np.isfinite(squares), factors * right - 0.5 * factors**2 * squares, -np.inf)
     whole = 0.5 * float(at.left @ at.left)

@@ -10,7 +10,7 @@ import numpy as np
 
 from hil.analysis.missing_effects._balance import read_numbers, readings
 from hil.analysis.missing_effects._fit import (
-    EVALUATIONS,
+    ROUNDS,
     Point,
     fit,
     linearised,
@@ -32,14 +32,8 @@ from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 
 HALF = 0.5  # of what stays without it a name must take off
-_HOPELESS = 0.5  # of what another name has reached: what promises less is not tried
-_FEW = 6  # evaluations of a short round
-_SHORT = 2  # rounds that tell which start or size is worth more of them
-_READ = 4  # names that are taken from the latent torque at each step
-_TRIED = 6  # names that are fitted at each step, the most promising ones
-_SIZES = 2  # from which an abrupt one starts
-_FITTED_OUT = 3  # of these are fitted to their end
-_ROUNDS = 6
+_TRIED = 8  # hypotheses that a step begins with, the most promising ones; half of them go on each time
+_RIVALS = 2  # of a step are fitted to their end
 _SETTLED = 0.1  # growth of log likelihood between rounds that ends them
 _BESIDE = 0.3  # of an effect's first number: where an optional one in the same unit begins
 _MOST_NAMES = 4
@@ -72,17 +66,23 @@ class Search:
         self.values = powers.values(self.problem.noise)
         self.problem = self.problem.weighed_by(powers.spectrum(self.problem.noise))
 
-    def fitted(self, hypothesis: Hypothesis, near: Candidate | None, rounds: int = _ROUNDS) -> Candidate:
+    def fitted(self, hypothesis: Hypothesis, near: Candidate | None, rounds: int = ROUNDS) -> Candidate:
         """Fit a hypothesis, weighed by the spectrum that it leaves itself; the best of its names is kept."""
-        point = point_at(self.problem, hypothesis, near.point.starts if near else None)
+        goes_on = near is not None and near.point.hypothesis is hypothesis
+        point = (
+            near.point
+            if near and goes_on
+            else point_at(self.problem, hypothesis, near.point.starts if near else None)
+        )
         best = before = self._candidate(point)
         problem = self.problem
-        if hypothesis.kind == "rigid":  # slow errors of a mass are friction; a chain's bend its resonances
+        if goes_on:
+            problem = problem.weighed_by(point.powers(problem).spectrum(problem.noise))
+        elif hypothesis.kind == "rigid":  # slow errors of a mass are friction; a chain's bend its resonances
             problem = problem.weighed_by(white(problem.noise, problem.rate_hz))
         for number in range(rounds):
             # slow misfit would trade a dead time for anything, until errors are weighed by their colour
-            held = frozenset() if number else frozenset({"torque_delay"})
-            point = fit(problem, point, held, EVALUATIONS if rounds > _SHORT else _FEW)
+            point = fit(problem, point, frozenset() if number or goes_on else frozenset({"torque_delay"}))
             after = self._candidate(point)
             best = max(best, after, key=self.score)
             if abs(after.log_likelihood - before.log_likelihood) < _SETTLED:
@@ -113,16 +113,18 @@ def search(problem: Problem, show: Callable[[str], None]) -> Search:
     started = with_better_starts(problem, point_at(problem, start))
     spectrum = started.powers(problem).spectrum(problem.noise)
     done = Search(replace(problem, spectrum=spectrum))
-    tried = done.fitted(start, None, _SHORT)
-    best = done.fitted(tried.point.hypothesis, tried)
+    best = done.fitted(start, None)
+    best = done.fitted(best.point.hypothesis, best)
     done.go_on_from(best)
+    weak = False
     while len(best.names) < _MOST_NAMES and not problem.is_noise(best.point.errors):
         grown = _grown(done, best, linear if not best.names else (), show)
         if grown is None or done.score(grown) <= done.score(best):
             break
         had, has = (problem.mean_square(one.point.errors) for one in (best, grown))
-        if remains(had, has, problem.noise**2, problem.slow_noise) > HALF:
-            break  # what it takes off would not do for a name
+        was_weak, weak = weak, remains(had, has, problem.noise**2, problem.slow_noise) > HALF
+        if weak and was_weak:
+            break  # of two that go together the first may take off less than half, the second does not
         best = _pruned(done, grown)
         done.go_on_from(best)
     return done
@@ -178,25 +180,27 @@ def _best_of(
     suggested: Sequence[tuple[Hypothesis, float]],
     show: Callable[[str], None],
 ) -> Candidate | None:
-    """The likeliest of suggested hypotheses, the first few fitted to their end."""
+    """The likeliest of suggested hypotheses, by successive halving.
+
+    Each gets a round, the better half more, until two are fitted to their end (K. Jamieson, A. Talwalkar,
+    AISTATS 2016, 240).
+    """
     tried: list[Candidate] = []
     reached = 0.0
-    for hypothesis, gain in suggested:
-        if gain < _HOPELESS * reached:
-            continue
+    most = max((gain for _, gain in suggested if gain < math.inf), default=0.0)
+    for hypothesis, gain in suggested[:_TRIED]:
+        if gain < HALF * min(most, reached):
+            break  # others have more before them and more behind them
         show(" + ".join(hypothesis.names))
-        tried.append(done.fitted(hypothesis, best, _SHORT))
+        tried.append(done.fitted(hypothesis, best, 1))
         reached = max(reached, tried[-1].log_likelihood - best.log_likelihood)
-    tried.sort(key=done.score, reverse=True)
-    ended: list[Candidate] = []
-    shapes = set()
-    for candidate in tried:
-        shape = (candidate.names, candidate.free)
-        if shape not in shapes:
-            shapes.add(shape)
-            ended.append(_opened(done, done.fitted(candidate.point.hypothesis, candidate), show))
-        if len(ended) == _FITTED_OUT:
-            break
+    rounds = 1
+    while len(tried) > _RIVALS:
+        tried.sort(key=done.score, reverse=True)
+        tried = tried[: max(_RIVALS, len(tried) // 2)]
+        tried = [done.fitted(one.point.hypothesis, one, rounds) for one in tried]
+        rounds *= 2
+    ended = [_opened(done, done.fitted(one.point.hypothesis, one), show) for one in tried]
     return max(ended, key=done.score, default=None)
 
 
@@ -209,16 +213,22 @@ def _suggested(done: Search, best: Candidate) -> list[tuple[Hypothesis, float]]:
     read = readings(best.point.hypothesis, done.problem.series)
     by_name = {one.hypothesis.names: one.hypothesis for one in reversed(read)}
     order = dict.fromkeys(one.hypothesis.names for one in read)
-    found = [(by_name[names], math.inf) for names in [*order][:_READ]]
+
+    def likelier(*starts: Hypothesis) -> Hypothesis:
+        return max(starts, key=lambda one: done.score(done.at(one, best)))
+
+    found = [
+        (likelier(one, best.point.hypothesis.with_term(one.terms[-1], one.opened[-1])), math.inf)
+        for one in (by_name[names] for names in order)
+    ]
     promised = promises(done.problem, linearised(done.problem, best.point))
-    cost = done.cost_of_a_number(best)
-    promised = [one for one in promised if one.gain > cost]
-    for sizes in best_by_name(promised, _SIZES)[:_TRIED]:
+    least = done.cost_of_a_number(best)
+    for sizes in best_by_name([one for one in promised if one.gain > least], _RIVALS):
         abrupt = EFFECTS[sizes[0].use.id].abrupt
         for one in sizes if abrupt else sizes[:1]:
-            starts = [base.with_term(one.use) for base in (best.point.hypothesis, one.numbers)]
-            found.append((max(starts, key=lambda h: done.score(done.at(h, best))), one.gain))
-    return found
+            starts = (base.with_term(one.use) for base in (best.point.hypothesis, one.numbers))
+            found.append((likelier(*starts), one.gain))
+    return sorted(found, key=lambda one: -one[1])
 
 
 def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candidate:
@@ -251,7 +261,7 @@ def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candi
         if 0.0 in parameter.opens:  # where it does nothing: a fit goes on from what is settled
             rest = EffectUse(use.id, {**use.values, parameter.name: 0.0})
             begins = hypothesis.without(index).with_term(rest, opened | {parameter.name})
-        tried = done.fitted(begins, best, _SHORT)
+        tried = done.fitted(begins, best, _RIVALS)
         best = max(best, tried, key=done.score)
     return best
 

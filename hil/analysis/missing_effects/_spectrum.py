@@ -53,6 +53,20 @@ class Spectrum:
         transform = transformed(values, rate_hz) * self.weights(length, rate_hz)[:, channels]
         return np.asarray(transform.reshape(len(values), -1).view(float), dtype=float)
 
+    def sent_back(self, values: Array, channels: npt.NDArray[np.bool_], rate_hz: float) -> Array:
+        """Slope of half the squares of `weighed` by each of values (blocks x channels): its transpose."""
+        firsts, window = _windows(len(values), rate_hz)
+        length = len(window)
+        slopes = transformed(values[None], rate_hz)[0] * self.weights(length, rate_hz)[:, channels] ** 2
+        slopes[:, 0] *= 2.0  # of one sign of frequency only
+        if length % 2 == 0:
+            slopes[:, -1] *= 2.0
+        parts = 0.5 * length * np.fft.irfft(slopes, length, axis=1) * window[:, None]
+        back = np.zeros(values.shape)
+        for first, part in zip(firsts.tolist(), parts, strict=True):
+            back[first : first + length] += part
+        return back
+
 
 def edges_hz(rate_hz: float) -> Array:
     """Of the bands: octaves up to half the rate."""
@@ -117,15 +131,19 @@ def transformed(values: Array, rate_hz: float) -> npt.NDArray[np.complex128]:
     Hann's windows of `SEGMENT_S` or the whole, lapped by half or more, so that a slow misfit does not leak
     into the octaves of noise; squares over windows and bins are powers of a block times bins.
     """
-    blocks = values.shape[1]
+    firsts, window = _windows(values.shape[1], rate_hz)
+    parts = np.stack([values[:, first : first + len(window)] for first in firsts], axis=1)
+    return np.asarray(np.fft.rfft(parts * window[:, None], axis=2))
+
+
+def _windows(blocks: int, rate_hz: float) -> tuple[npt.NDArray[np.int64], Array]:
+    """First block of each window of a recording of so many blocks, and the factor of each of its blocks."""
     length = _window_of(blocks, rate_hz)
     count = 1 + int(np.ceil((blocks - length) / max(1, length // 2)))
     window = np.sqrt(8.0 / 3.0 / length) * (
         0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(length) + 0.5) / length)
     )
-    firsts = np.linspace(0, blocks - length, count).round().astype(int)
-    parts = np.stack([values[:, first : first + length] for first in firsts], axis=1)
-    return np.asarray(np.fft.rfft(parts * window[:, None], axis=2))
+    return np.linspace(0, blocks - length, count).round().astype(np.int64), window
 
 
 def powers_of(errors: Sequence[Array], rate_hz: float, signal: Array) -> Powers:

@@ -1,7 +1,7 @@
 """The verdict: three lines, every term of which the data set.
 
 - `named`: an effect whose confidence is one half or more: the posterior weight of the hypotheses that hold
-  it, times the share of the misfit beyond noise that goes with it on data not fitted.
+  it, times the share of the misfit beyond noise that goes with it, recordings held out included.
 - `none`: numbers alone have half of the weight or more, and what they leave is proven noise.
 - `unknown`: anything else.
 
@@ -12,7 +12,7 @@ make up a name that takes off less than itself.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -21,18 +21,17 @@ from hil.analysis.missing_effects._curve import curves_of
 from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised, point_at
 from hil.analysis.missing_effects._hypothesis import TOLERANCE, Hypothesis
 from hil.analysis.missing_effects._noise import rounding_step
-from hil.analysis.missing_effects._odds import Candidate, remains, weights_of
+from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains, weights_of
 from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Replay, Verdict
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._search import HALF, Search
+from hil.analysis.missing_effects._spectrum import RIGHT_TO
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
 
 Array = npt.NDArray[np.float64]
 
-_ALIKE = np.log(20.0)
-"""Two hypotheses are alike where the data would give the right one odds below 20:1."""
 _LATE = {"actuator_lag": ("sensor_lag", "time_constant_s"), "dead_time": ("channel_skew", "delay_s")}
 _RIVALS = 3  # names that may take the place of another
 _SHOWN = 5  # alternatives
@@ -41,7 +40,7 @@ _DRAWN = 40  # models, by which a figure of the new model is known
 
 @dataclass(frozen=True)
 class Judged:
-    """A search, and what a candidate leaves: variance on data not fitted, gaps of both kinds of data.
+    """A search, and what a candidate leaves: variance over all data, gaps of both kinds of data.
 
     `asked` is the model as it came.
     """
@@ -75,8 +74,8 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
         sure = sum(
             float(w) for one, w in zip(candidates, weights, strict=True) if {*one.names} >= {*best.names}
         )
-        effects += _mismatches(done, numbers, sure)
-    if not best.names and done.problem.is_noise(best.point.errors):
+        effects += _mismatches(done, numbers, sure, best)
+    if done.problem.is_noise(best.point.errors):
         effects += _roundings(done, float(weights[candidates.index(best)]))
     something_else = _remains(of, done.found[()], best) if best.names else 0.0
     verdict: Verdict = "unknown"
@@ -154,7 +153,7 @@ def _named(
 
 
 def _remains(of: Judged, before: Candidate, after: Candidate) -> float:
-    """Share of the variance beyond noise that stays on data not fitted."""
+    """Share of the variance beyond noise that stays."""
     problem = of.done.problem
     return remains(of.left(before), of.left(after), problem.noise**2, problem.slow_noise)
 
@@ -180,9 +179,9 @@ def _alike(done: Search, best: Candidate, candidates: Sequence[Candidate]) -> di
     found: dict[str, tuple[str, ...]] = {}
     for one in candidates:
         lost, new = {*best.names} - {*one.names}, {*one.names} - {*best.names}
-        if len(lost) != 1 or len(new) != 1 or done.score(best) - done.score(one) > _ALIKE:
+        if len(lost) != 1 or len(new) != 1 or done.score(best) - done.score(one) > ALIKE:
             continue
-        if _apart(problem, best.point, one.point) < _ALIKE:
+        if _apart(problem, best.point, one.point) < ALIKE:
             name = lost.pop()
             found[name] = (*found.get(name, ()), new.pop())
     for index, use in enumerate(best.point.hypothesis.terms):
@@ -192,7 +191,7 @@ def _alike(done: Search, best: Candidate, candidates: Sequence[Candidate]) -> di
         laws = [EFFECTS[other.id].law for other in best.point.hypothesis.without(index).terms]
         linear = all(law.chain is not None or law.reads is not None for law in laws)
         other = best.point if linear else fit(problem, point_at(problem, late, best.point.starts))
-        if _apart(problem, best.point, other) < _ALIKE:
+        if _apart(problem, best.point, other) < ALIKE:
             label = best.names[index]
             names = [name for name in late.names if name not in best.names]
             found[label] = (*found.get(label, ()), " + ".join(names))
@@ -270,16 +269,19 @@ def _is_far(numbers: Mapping[str, tuple[float, float, float]], done: Search) -> 
 
 
 def _mismatches(
-    done: Search, numbers: Mapping[str, tuple[float, float, float]], weight: float
+    done: Search, numbers: Mapping[str, tuple[float, float, float]], weight: float, best: Candidate
 ) -> list[Named]:
-    """Numbers that are wrong by more than their tolerance and doubt, each with the probability of that."""
+    """Numbers that are wrong by more than their tolerance and doubt, each with the probability of that.
+
+    One that moves no channel by more than what no model is right to says nothing.
+    """
     from scipy.special import ndtr
 
     found = []
     for name, (_, value, error) in numbers.items():
         moved, doubt = _off(name, numbers, done)
         sure = weight * float(ndtr((moved - 1.0) / max(doubt, 1e-12)))
-        if sure >= HALF and moved - 1.0 > doubt:
+        if sure >= HALF and moved - 1.0 > doubt and _shows(done.problem, best.point, name):
             found.append(
                 Named(
                     EffectUse("parameter_mismatch", {"parameter": name, "value": value}),
@@ -288,3 +290,14 @@ def _mismatches(
                 )
             )
     return found
+
+
+def _shows(problem: Problem, point: Point, name: str) -> bool:
+    """Whether a number of the base put back moves a channel by more than what no model is right to."""
+    base = {name: problem.model.parameters[name]}
+    back = point_at(
+        problem, replace(point.hypothesis, numbers={**point.hypothesis.numbers, **base}), point.starts
+    )
+    pairs = zip(back.errors, point.errors, strict=True)
+    moved = problem.mean_square([one - other for one, other in pairs])
+    return bool(np.nanmax(moved / np.maximum(problem.signal, 1e-300)) > RIGHT_TO**2)

@@ -68,3 +68,16 @@ def test_windows_reach_both_ends_of_a_recording() -> None:
     errors = np.zeros((1700, 3))
     errors[-300:] = 1.0
     assert np.sum(powers_of([errors], RATE_HZ, np.ones(3)).power) > 0.0
+
+
+@pytest.mark.parametrize("blocks", [700, 1000, 2501])
+def test_what_is_sent_back_is_the_slope_of_half_the_squares(blocks: int) -> None:
+    rng = np.random.default_rng(2)
+    errors, change = rng.normal(0.0, 1.0, (2, blocks, 2))
+    channels = np.array([True, False, True])
+    spectrum = powers_of([np.insert(errors, 1, np.nan, axis=1)], RATE_HZ, np.ones(3)).spectrum(
+        np.full(3, 0.1)
+    )
+    weighed = [spectrum.weighed(one[None], channels, RATE_HZ)[0] for one in (errors, change)]
+    back = spectrum.sent_back(errors, channels, RATE_HZ)
+    assert np.sum(back * change) == pytest.approx(weighed[0] @ weighed[1])

@@ -1,0 +1,53 @@
+"""Orders of turning: found in the misfit, wherever that is large."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hil.analysis.missing_effects._fit import linearised, point_at, with_better_starts
+from hil.analysis.missing_effects._hypothesis import Hypothesis
+from hil.analysis.missing_effects._noise import proven_noise
+from hil.analysis.missing_effects._problem import problem_of
+from hil.analysis.missing_effects._screen import promises
+from hil.analysis.missing_effects._series import series_of
+from hil.analysis.missing_effects._spectrum import white
+from hil.core.model import EffectUse, Model
+from hil.core.recording import Recording
+from hil.plant import simulate
+
+_CHAIN = Model(
+    "two_inertia",
+    {
+        "motor_inertia": 0.02,
+        "gear_ratio": 8.0,
+        "shaft_stiffness": 6000.0,
+        "shaft_damping": 20.0,
+        "vehicle_inertia": 100.0,
+        "torque_delay": 0.0,
+    },
+)
+
+
+@pytest.mark.parametrize("order", [1.0, 3.4])
+def test_an_order_whose_misfit_grows_towards_a_resonance_promises_most(order: float) -> None:
+    """A run up from standstill: the ripple gets faster and larger until the recording ends."""
+    ripple = EffectUse("wheel_order_disturbance", {"order": order, "amplitude_nm": 20.0, "phase_rad": 0.4})
+    hidden = Model("two_inertia", dict(_CHAIN.parameters), (ripple,))
+    time = np.arange(24_000) * 1e-3
+    torque = 20.0 + 5.0 * np.sin(2.0 * np.pi * 0.5 * time)
+    channels = simulate(hidden, torque, 1e-3)
+    rng = np.random.default_rng(0)
+    shown = {name: one + rng.normal(0.0, 0.01 * np.std(one), len(one)) for name, one in channels.items()}
+    measured = Recording({"time_s": time, "motor_torque_ref_nm": torque} | shown, Path("up.csv"))
+    series = series_of(_CHAIN, [measured])
+    noise = proven_noise(series, {})
+    problem = problem_of(_CHAIN, series, noise, white(noise, series[0].rate_hz))
+    point = with_better_starts(problem, point_at(problem, Hypothesis(_CHAIN, _CHAIN.parameters)))
+    problem = problem.weighed_by(point.powers(problem).spectrum(noise))
+    promised = promises(problem, linearised(problem, point))
+    best = max(promised, key=lambda one: one.gain)
+    assert best.label == "wheel_order_disturbance"
+    assert float(best.use.values["order"]) == pytest.approx(order, abs=0.02)
