@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hil.core.errors import BadInputError
 from hil.core.model import load_model
 from hil.core.recording import read_recording
 from hil.engine import RunRequest, load_bench, run_plan
@@ -34,9 +35,8 @@ def test_the_simulated_axle_drives_on_the_road_that_the_panel_confirmed(tmp_path
     assert np.mean(left - right) > 1.0
 
 
-@pytest.mark.slow
-def test_a_panel_without_a_road_refuses_it(tmp_path: Path) -> None:
+def test_a_road_that_no_tyre_follows_is_refused_before_the_bench_is_touched(tmp_path: Path) -> None:
     model = load_model(BENCHES / "three_inertia.toml")
-    outcome = run_plan(RunRequest(plan(STEPS), BENCH, tmp_path, model=model))
-    assert outcome.error is not None
-    assert "EMUL" in str(outcome.error)
+    with pytest.raises(BadInputError, match="hold whatever the road is"):
+        run_plan(RunRequest(plan(STEPS), BENCH, tmp_path, model=model))
+    assert list(tmp_path.iterdir()) == []
