@@ -64,7 +64,7 @@ class ServeRequest:
         trusted_proxies: addresses of proxies before the service, which say for whom and how they ask.
         rate: requests that an address may send a second, in the long run.
         for_s: ends by itself after this many seconds.
-        notices: who gets which; None for nobody.
+        notices: who gets which; None: they are not sent.
         ready: called with the URL once it answers.
     """
 

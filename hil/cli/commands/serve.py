@@ -84,7 +84,7 @@ def _test_notices(data: Path, notices: NoticeSettings | None, *, as_json: bool) 
     """Exit code 3 if somebody does not get it.
 
     Raises:
-        BadInputError: nobody gets notices.
+        BadInputError: there is no --notices.
     """
     from hil.service.notices import Post, send_test
 

@@ -261,7 +261,7 @@ class _PredictedRecorder:
         self._metadata[name] = values
 
     def store_source(self, name: str, path: Path) -> None:
-        """Nothing: nobody runs a prediction again."""
+        """Nothing: a prediction is not run again."""
 
     def event(self, clock_s: float, kind: str, text: str) -> None:
         """Keep what happened at a time of the bench clock."""

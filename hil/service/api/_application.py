@@ -24,7 +24,6 @@ from hil.service.api import (
     _run_list,
     _run_views,
     _runs,
-    _schemas,
     _studies,
     _trends,
 )
@@ -40,7 +39,6 @@ _PARTS = (
     _agents,
     _live,
     _plans,
-    _schemas,
     _runs,
     _notes,
     _run_views,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Body, Request, Response
 
@@ -104,3 +104,12 @@ async def forecast(
     if plan is None:
         raise missing("plan", wanted.plan)
     return await service.forecast(plan, bench)
+
+
+@router.get("/schemas/{kind}", name="get_schema")
+async def get_schema(
+    kind: Literal["plan", "bench", "model", "controller", "campaign"], service: TheService, me: Viewer
+) -> dict[str, Any]:
+    """JSON schema of a file that people write, as `hil schema`."""
+    del me
+    return await service.worker_pool.ask("schema", kind=kind)

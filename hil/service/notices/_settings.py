@@ -129,5 +129,5 @@ def read_settings(path: Path) -> NoticeSettings:
         what = first["msg"].removeprefix("Value error, ")
         raise BadInputError(f"{place}: {what}" if place else what, where=str(path), fix=_FIX) from error
     if not found.recipients:
-        raise BadInputError("names nobody", where=str(path), fix=f"add [[webhook]] or [[mail]]: {_FIX}")
+        raise BadInputError("has no recipient", where=str(path), fix=f"add [[webhook]] or [[mail]]: {_FIX}")
     return found

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hil.api_schemas.api import PlanData, VariableData
+from hil.app.schemas import SCHEMAS
 from hil.core.controller import controller_from_toml
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable
@@ -110,3 +111,8 @@ def controller(name: str, text: str) -> dict[str, Any]:
     """
     controller_from_toml(text, f"{name}.toml")
     return {}
+
+
+def schema(kind: str) -> dict[str, Any]:
+    """As `hil schema` prints it."""
+    return SCHEMAS[kind]()

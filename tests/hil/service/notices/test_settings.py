@@ -58,7 +58,7 @@ def test_a_recipient_gets_what_it_asks_for(tmp_path: Path) -> None:
             "not sent without encryption",
         ),
         (("benches =", 'secret_env = "NO_SUCH_SECRET"\nbenches ='), "the environment has no NO_SUCH_SECRET"),
-        ((_GOOD, "address = ''"), "names nobody"),
+        ((_GOOD, "address = ''"), "has no recipient"),
     ],
 )
 def test_a_mistake_is_named_with_its_place(tmp_path: Path, change: tuple[str, str], words: str) -> None:
