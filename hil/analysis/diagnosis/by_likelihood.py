@@ -26,6 +26,7 @@ from hil.analysis.diagnosis.tell.result import (
 )
 from hil.analysis.diagnosis.tell.separating import separating_plan
 from hil.analysis.diagnosis.tell.thresholds import CHANNEL_NOISES, LEAST_TORQUE_NM, WORTH_A_PLAN
+from hil.analysis.diagnosis.tell.verdict import open_channels
 from hil.analysis.diagnosis.tell.words import Where, where_changed
 from hil.analysis.missing_effects import Named, Outcome, Replay
 from hil.core.channels import OUTPUTS
@@ -172,12 +173,23 @@ def _verdict(
 ) -> tuple[Verdict, str]:
     """The verdict, and what stays where it is `unknown`: small effects are corrections, not findings."""
     verdict: Verdict = found.verdict
+    if verdict == "named" and effects and _stays_open(effects, shown):
+        verdict = "unknown"
     if verdict == "named" and not effects:
         verdict = "unknown" if _open(shown.after) else "none"
     doubt = unseen.words(verdict)
     if verdict == "none" and doubt:
         return "unknown", doubt
     return verdict, _remaining(found, shown) if verdict == "unknown" else ""
+
+
+def _stays_open(effects: tuple[NamedEffect, ...], shown: _Shown) -> bool:
+    """Whether a channel that had a gap near the noise keeps it: what is missing has another name, or none."""
+    before, after = (
+        np.array([gaps[name].noises if name in gaps else 0.0 for name in OUTPUTS])
+        for gaps in (shown.before, shown.after)
+    )
+    return any(open_channels([one.use.id for one in effects], before, after, apart=False))
 
 
 def _remaining(found: Outcome, shown: _Shown) -> str:
