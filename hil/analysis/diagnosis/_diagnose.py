@@ -83,10 +83,11 @@ def diagnose(
     stated = stated_noise([*recordings, *holdout])
     asked = Asked.checked({**stated, **(noise or {})}, least or {}, at_most_s)
     with within_floating_point(", ".join(str(r.source) for r in recordings)):
+        ends_s = time.process_time() + asked.at_most_s
         found, notes = _diagnosed(model, recordings, holdout, asked, show)
         if model.transfer_functions or found.unfinished or not leaves_more_than_noise(found):
             return found
-        return _judged_again(found, notes, model, recordings, holdout, asked, show)
+        return _judged_again(found, notes, model, recordings, holdout, asked, show, ends_s)
 
 
 def leaves_more_than_noise(found: Diagnosis) -> bool:
@@ -102,17 +103,20 @@ def _judged_again(
     holdout: Sequence[Recording],
     asked: Asked,
     show: Callable[[str], None],
+    ends_s: float,
 ) -> Diagnosis:
     """What one likelihood, in which a misfit counts with its own correlation, says of the same recordings.
 
     The search judges a name by how much of the base's gap it closes, which far from the noise is true of
     whatever brakes a base that runs away (docs/decisions/0031). Without a name of the likelihood's own an
     `unknown` stays what it is.
+
+    Args:
+        ends_s: processor time at which the search and this together have taken what they may.
     """
-    ends = time.process_time() + asked.at_most_s
 
     def show_in_time(text: str) -> None:
-        if time.process_time() > ends:
+        if time.process_time() > ends_s:
             raise OutOfTimeError
         show(text)
 
@@ -122,10 +126,14 @@ def _judged_again(
     except KeyboardInterrupt:
         return replace(found, unfinished=INTERRUPTED)
     except OutOfTimeError:
-        return replace(found, unfinished=OUT_OF_TIME)
+        return replace(found, unfinished=_time_is_up(asked))
     if other.verdict == "named" or found.verdict == "named":
         return replace(other, seconds=found.seconds + other.seconds)
     return replace(found, seconds=found.seconds + other.seconds)
+
+
+def _time_is_up(asked: Asked) -> str:
+    return f"{asked.at_most_s / 60.0:.3g} min of processor time were up (--at-most)"
 
 
 def _diagnosed(
@@ -143,7 +151,7 @@ def _diagnosed(
     found, unfinished = _searched(problem, base, rounded, show)
     problem.allowance.lift()
     if unfinished == OUT_OF_TIME:
-        unfinished = f"{asked.at_most_s / 60.0:.3g} min of processor time were up (--at-most)"
+        unfinished = _time_is_up(asked)
     problem = replace(problem, traces=found.evidence.problem.traces, angles=found.best.angles)
     show("judging")
     verdict: Verdict = "unknown" if unfinished else verdict_of(found, bool(rounded))

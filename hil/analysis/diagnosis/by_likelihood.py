@@ -24,8 +24,8 @@ from hil.analysis.diagnosis.tell.result import (
     Start,
     Verdict,
 )
-from hil.analysis.diagnosis.tell.separating import separating_plan
-from hil.analysis.diagnosis.tell.thresholds import CHANNEL_NOISES, LEAST_TORQUE_NM, WORTH_A_PLAN
+from hil.analysis.diagnosis.tell.separating import plan_file, plan_within_recordings, worth_a_plan
+from hil.analysis.diagnosis.tell.thresholds import CHANNEL_NOISES
 from hil.analysis.diagnosis.tell.verdict import open_channels
 from hil.analysis.diagnosis.tell.words import Where, where_changed
 from hil.analysis.missing_effects import Named, Outcome, Replay
@@ -33,6 +33,7 @@ from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.errors.wording import multiple, share
 from hil.core.model import EffectUse, Model
+from hil.plant import gear_ratio_of
 
 Array = npt.NDArray[np.float64]
 
@@ -134,10 +135,6 @@ class _Shown:
         every = zip(self.traces, self.before_samples, self.after_samples, strict=True)
         return tuple(Overlay(t.name, t.dt, t.torque, t.samples, b, a) for t, b, a in every)
 
-    def largest(self, column: int) -> float:
-        """Largest value of a channel, 0 where it was not recorded."""
-        return max(float(np.max(np.abs(np.nan_to_num(t.measured[:, column])))) for t in self.traces)
-
 
 def _trace(one: Replay) -> Trace:
     s = one.series
@@ -224,33 +221,20 @@ def _numbers(found: Outcome, shown: _Shown) -> tuple[Start | None, dict[str, tup
 
 def _alternatives(found: Outcome, shown: _Shown) -> tuple[Alternative, ...]:
     """Other names, each with the test that separates it from what is given back."""
-    torque = max(float(np.max(np.abs(t.torque))) for t in shown.traces)
     first = found.effects[0].id if found.effects else "numbers"
+    ratio = gear_ratio_of(found.model) or 1.0
     others = []
     for one in found.alternatives:
         if found.effects and not round(one.confidence, 2):
             continue  # it would be shown as 0
         text, plan = one.separating_test or EFFECTS[one.id].shown_by, ""
-        if one.model is not None and one.confidence > WORTH_A_PLAN and torque > LEAST_TORQUE_NM:
-            text, plan = separating_plan(
-                found.model,
-                one.model,
-                found.noise,
-                torque,
-                (first, one.id),
-                speed_rad_s=_fastest(found.model, shown),
-                shaft_torque_nm=shown.largest(2) or None,
+        if one.model is not None and worth_a_plan(one.confidence, shown.traces):
+            text, plan = plan_within_recordings(
+                found.model, one.model, found.noise, shown.traces, ratio, (first, one.id)
             )
-        about = [one.id, *(str(v) for v in one.use.values.values() if isinstance(v, str))]
-        name = f"separate_{'_'.join(about)}.yaml" if plan else None
+        name = plan_file(one.use) if plan else None
         others.append(Alternative(one.use, one.confidence, text, name, plan or None))
     return tuple(others)
-
-
-def _fastest(model: Model, shown: _Shown) -> float:
-    """Largest wheel speed in the recordings, rad/s."""
-    ratio = float(model.parameters.get("gear_ratio", 1.0))
-    return max(shown.largest(1), shown.largest(0) / ratio)
 
 
 def _classes(effects: Sequence[Named]) -> list[str]:

@@ -83,11 +83,15 @@ class Linearised:
         """Models that the data allow as well, by the covariance of the numbers; the same ones every time."""
         if not self.coordinates:
             return ()
-        values, axes = np.linalg.eigh(self.covariance)
-        normal = np.random.default_rng(0).standard_normal((count, len(values)))
-        moves = normal * np.sqrt(np.maximum(values, 0.0)) @ axes.T
-        moves = np.clip(moves, *bounds_of(self.coordinates))
+        moves = np.clip(likely_moves(self.covariance, count), *bounds_of(self.coordinates))
         return tuple(self.point.hypothesis.moved(self.coordinates, move).model() for move in moves)
+
+
+def likely_moves(covariance: Array, count: int) -> Array:
+    """Draws around what was found, (count, numbers), by the covariance; the same ones every time."""
+    values, axes = np.linalg.eigh(covariance)
+    normal = np.random.default_rng(0).standard_normal((count, len(values)))
+    return np.asarray(normal * np.sqrt(np.maximum(values, 0.0)) @ axes.T)
 
 
 def point_at(problem: Problem, hypothesis: Hypothesis, starts: Sequence[Array] | None = None) -> Point:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -210,7 +211,7 @@ class Trial:
         """The criteria that depend on the controller."""
         return judge(self._judging, found.recording, found.segments, measured=False, device=False)
 
-    @property
+    @cached_property
     def _judging(self) -> Plan:
         """The plan with the criteria alone that depend on the controller."""
         return self.plan.model_copy(update={"criteria": self.driven.criteria})
@@ -237,7 +238,7 @@ class Trial:
             for id_, margin in margins.items()
         }
 
-    @property
+    @cached_property
     def device_checks(self) -> tuple[Criterion, ...]:
         """What any device must do in the segments that the controller drives."""
         return tuple(one for one in self._judging.device_criteria if one.segment in self.driven.segments)

@@ -17,6 +17,7 @@ import numpy.typing as npt
 from hil.analysis.diagnosis.fit.coordinates import sensors_of
 from hil.analysis.diagnosis.fit.fit import Fit
 from hil.analysis.diagnosis.tell.thresholds import DRAWN_MODELS, NUMBERS_FREE, NUMBERS_STEP
+from hil.analysis.missing_effects import likely_moves
 from hil.core.model import Model, parameter_names
 from hil.plant import gear_ratio_of, pack, simulate_many
 
@@ -86,8 +87,6 @@ def as_likely(kept: Fit, errors: Array) -> list[Model]:
         return []
     plain = np.sqrt(np.maximum(np.diag(kept.covariance), 1e-300))
     scaled = kept.covariance * np.outer(errors / plain, errors / plain)
-    values, axes = np.linalg.eigh(scaled)
-    rng = np.random.default_rng(0)
-    drawn = rng.standard_normal((DRAWN_MODELS, len(values))) * np.sqrt(np.maximum(values, 0.0)) @ axes.T
+    drawn = likely_moves(scaled, DRAWN_MODELS)
     lower, upper = (np.array([getattr(c, side) for c in coordinates]) for side in ("lower", "upper"))
     return [kept.hypothesis.model(np.clip(kept.theta + step, lower, upper)) for step in drawn]

@@ -11,7 +11,7 @@ from hil.analysis.diagnosis.fit.fit import Fit
 from hil.analysis.diagnosis.fit.problem import Problem
 from hil.analysis.diagnosis.search.search import Found
 from hil.analysis.diagnosis.tell.result import Alternative
-from hil.analysis.diagnosis.tell.separating import separating_plan
+from hil.analysis.diagnosis.tell.separating import plan_file, plan_within_recordings, worth_a_plan
 from hil.analysis.diagnosis.tell.thresholds import (
     CHANNEL_NOISES,
     CLOSED_FAIRLY,
@@ -21,13 +21,11 @@ from hil.analysis.diagnosis.tell.thresholds import (
     HALF_MARGIN,
     HALF_OPEN,
     HALVED,
-    LEAST_TORQUE_NM,
     LEFT_NOISELESS,
     LESS_SURE,
     NOISELESS,
     OPEN_CONFIDENCE,
     STANDSTILL_NOISES,
-    WORTH_A_PLAN,
 )
 from hil.core.effects import EFFECTS, Effect
 from hil.core.model import EffectUse
@@ -105,19 +103,16 @@ def alternatives_of(found: Found, verdict: str) -> tuple[Alternative, ...]:
         use = others[0]
         problem = found.evidence.problem
         text, plan = _experiment(EFFECTS[use.id], problem), None
-        torque = max(float(np.max(np.abs(t.torque))) for t in problem.traces)
-        # Without any torque in the recordings no one knows what a test may ask of this bench.
-        if confidence > WORTH_A_PLAN and mine is not one and torque > LEAST_TORQUE_NM:
-            text, plan = separating_plan(
+        if mine is not one and worth_a_plan(confidence, problem.traces):
+            text, plan = plan_within_recordings(
                 mine.hypothesis.model(mine.theta),
                 one.hypothesis.model(one.theta),
                 problem.noise,
-                torque,
+                problem.traces,
+                problem.gear_ratio,
                 (mine.hypothesis.ids[-1], use.id),
-                speed_rad_s=max(_largest(problem, 1), _largest(problem, 0) / problem.gear_ratio),
-                shaft_torque_nm=_largest(problem, 2) or None,
             )
-        name = "_".join(part for part in ("separate", *key_of(use)) if part) + ".yaml" if plan else None
+        name = plan_file(use) if plan else None
         kept[key_of(use)] = Alternative(use, confidence, text, name, plan)
     return tuple(sorted(kept.values(), key=lambda a: -a.confidence)[:5])
 
@@ -139,11 +134,6 @@ def turns_one_way(problem: Problem) -> bool:
         level = STANDSTILL_NOISES * float(problem.noise[column]) / np.sqrt(trace.block)
         ways |= {sign for sign in (-1, 1) if np.any(sign * trace.measured[:, column] > level)}
     return len(ways) == 1
-
-
-def _largest(problem: Problem, column: int) -> float:
-    """Largest value of a channel in the recordings, 0 where it was not measured."""
-    return max(float(np.max(np.abs(np.nan_to_num(t.measured[:, column])))) for t in problem.traces)
 
 
 def _others(found: Found, verdict: str) -> list[tuple[Fit, Fit, float]]:

@@ -15,21 +15,25 @@ import numpy as np
 import numpy.typing as npt
 import yaml
 
+from hil.analysis.diagnosis.data.trace import Trace
+from hil.analysis.diagnosis.fit.coordinates import key_of
 from hil.analysis.diagnosis.tell.apart import apart, played
 from hil.analysis.diagnosis.tell.thresholds import (
     DURATION_S,
     FAST_KM_H,
     FAST_RAD_S,
+    LEAST_TORQUE_NM,
     SETTLE_S,
     SHAFT_SHARE,
     SHARES,
     SLOW_KM_H,
     TELLS,
     WHEEL_RADIUS_M,
+    WORTH_A_PLAN,
 )
 from hil.core.channels import OUTPUTS, unit_of
 from hil.core.errors.wording import multiple, quantity
-from hil.core.model import Model
+from hil.core.model import EffectUse, Model
 from hil.plant import gear_ratio_of
 from test_plans import Plan, plan_from_text
 from test_plans.steps import SAMPLE_TIME_S, Excitation, HoldSpeed
@@ -102,6 +106,40 @@ def separating_plan(
         return f"no test of ours tells them apart: the best shows {shown}", ""
     peak = float(np.max(np.abs(chosen.torque)))
     return f"{_WORDS[chosen.name]}, up to {peak:.3g} N m: {_difference(levels, noise)}", chosen.text
+
+
+def worth_a_plan(confidence: float, traces: Sequence[Trace]) -> bool:
+    """Whether a rival is likely enough; without torque in the recordings no one knows what a test may ask."""
+    return confidence > WORTH_A_PLAN and _largest_torque(traces) > LEAST_TORQUE_NM
+
+
+def plan_within_recordings(
+    one: Model, other: Model, noise: Array, traces: Sequence[Trace], gear_ratio: float, names: tuple[str, str]
+) -> tuple[str, str]:
+    """The `separating_plan` that asks for no more torque, speed and shaft torque than the recordings have."""
+    return separating_plan(
+        one,
+        other,
+        noise,
+        _largest_torque(traces),
+        names,
+        speed_rad_s=max(_largest(traces, 1), _largest(traces, 0) / gear_ratio),
+        shaft_torque_nm=_largest(traces, 2) or None,
+    )
+
+
+def plan_file(use: EffectUse) -> str:
+    """Name of the plan that separates an effect from what is given back."""
+    return "_".join(part for part in ("separate", *key_of(use)) if part) + ".yaml"
+
+
+def _largest_torque(traces: Sequence[Trace]) -> float:
+    return max(float(np.max(np.abs(t.torque))) for t in traces)
+
+
+def _largest(traces: Sequence[Trace], column: int) -> float:
+    """Largest value of a channel in the recordings, 0 where it was not measured."""
+    return max(float(np.max(np.abs(np.nan_to_num(t.measured[:, column])))) for t in traces)
 
 
 def _difference(levels: Array, noise: Array) -> str:
