@@ -105,7 +105,8 @@ class Problem:
         if not np.all(np.abs(seen) < _FAR):  # NaN as well
             seen = np.clip(np.nan_to_num(seen, nan=_FAR), -_FAR, _FAR)
         first = seen[:, 0] / self.noise[one.has]
-        return np.concatenate([self.spectrum.weighed(seen, one.has, one.rate_hz), first], axis=1)
+        windows = self.spectrum.weighed(seen, one.has, one.rate_hz)
+        return np.concatenate([windows, self.spectrum.begun(seen, one.has, one.rate_hz), first], axis=1)
 
     def start_basis(self, index: int, hypothesis: Hypothesis, start: Array) -> tuple[Array, Array, Array]:
         """Change of weighed errors with a recording's start (numbers x states), sizes, and its basis."""

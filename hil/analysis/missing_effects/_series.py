@@ -14,7 +14,7 @@ from hil.core.channels import INPUT, OUTPUTS, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
-from hil.plant import load_of
+from hil.plant import load_of, turned
 
 Array = npt.NDArray[np.float64]
 
@@ -66,15 +66,7 @@ class Series:
 
     def angles(self, gear_ratio: float) -> Array:
         """Wheel and rotor angle in rad at every sample (n x 2), integrated from the recorded speeds."""
-        motor, wheel = self.samples[:, 0], self.samples[:, 1]
-        if not self.has[1]:
-            wheel = motor / gear_ratio
-        if not self.has[0]:
-            motor = wheel * gear_ratio
-        speeds = np.nan_to_num(np.column_stack([wheel, motor]))
-        turned = np.cumsum(0.5 * self.dt * (speeds[1:] + speeds[:-1]), axis=0)
-        first = self.first_wheel_angle_rad * np.array([1.0, gear_ratio])
-        return np.asarray(first + np.concatenate([np.zeros((1, 2)), turned]), dtype=float)
+        return turned(self.samples, self.dt, gear_ratio, self.first_wheel_angle_rad)
 
 
 def series_of(model: Model, recordings: Sequence[Recording]) -> list[Series]:

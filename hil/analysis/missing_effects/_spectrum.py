@@ -53,6 +53,20 @@ class Spectrum:
         transform = transformed(values, rate_hz) * self.weights(length, rate_hz)[:, channels]
         return np.asarray(transform.reshape(len(values), -1).view(float), dtype=float)
 
+    def begun(self, values: Array, channels: npt.NDArray[np.bool_], rate_hz: float) -> Array:
+        """sets x blocks x channels as weighed numbers of the beginning, where windows weigh little.
+
+        The first window rises from zero: what it leaves of a block's weight counts by the whole variance.
+        """
+        weight = _unseen(values.shape[1], rate_hz)
+        bins = np.bincount(
+            _bands(self.edges_hz, _window_of(values.shape[1], rate_hz), rate_hz),
+            minlength=len(self.edges_hz) - 1,
+        )
+        scale = np.sqrt(self.variance[channels] @ bins / np.sum(bins))
+        part = values[:, : len(weight)] * weight[:, None] / scale
+        return np.asarray(part.reshape(len(values), -1), dtype=float)
+
     def sent_back(self, values: Array, channels: npt.NDArray[np.bool_], rate_hz: float) -> Array:
         """Slope of half the squares of `weighed` by each of values (blocks x channels): its transpose."""
         firsts, window = _windows(len(values), rate_hz)
@@ -144,6 +158,17 @@ def _windows(blocks: int, rate_hz: float) -> tuple[npt.NDArray[np.int64], Array]
         0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(length) + 0.5) / length)
     )
     return np.linspace(0, blocks - length, count).round().astype(np.int64), window
+
+
+def _unseen(blocks: int, rate_hz: float) -> Array:
+    """Root of the share of each block's weight that a recording's first window leaves, as it rises."""
+    firsts, window = _windows(blocks, rate_hz)
+    length = len(window)
+    seen = np.zeros(blocks)
+    for first in firsts.tolist():
+        seen[first : first + length] += window**2
+    rises = seen[: length // 2] * length / 2.0
+    return np.asarray(np.sqrt(np.maximum(1.0 - rises, 0.0)))
 
 
 def powers_of(errors: Sequence[Array], rate_hz: float, signal: Array) -> Powers:
