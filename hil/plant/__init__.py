@@ -4,7 +4,7 @@ from hil.plant._angles import turned
 from hil.plant._batch_simulation import ideal_sensors, simulate_many
 from hil.plant._linear import LinearSystem, linear_system, linear_system_of, system
 from hil.plant._motor_limits import refuse_motor_limits
-from hil.plant._replay import Start, gear_ratio_of, load_of, replay, settled_start, simulate
+from hil.plant._replay import Start, gear_ratio_of, load_of, replay, replayed, simulate
 from hil.plant._stability import LONGEST_STEP_S, is_stable, refuse_diverged_state, refuse_too_stiff
 from hil.plant.sensors import DELAY as SENSOR_DELAY
 from hil.plant.sensors import GAIN as SENSOR_GAIN
@@ -34,9 +34,9 @@ __all__ = [
     "refuse_motor_limits",
     "refuse_too_stiff",
     "replay",
+    "replayed",
     "sensor_of",
     "sensor_response",
-    "settled_start",
     "simulate",
     "simulate_many",
     "system",

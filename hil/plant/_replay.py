@@ -133,10 +133,7 @@ def replay(model: Model, recording: Recording) -> Recording:
         dt = float((time[-1] - time[0]) / (len(time) - 1))
     recorded = _on_grid(recording, grid)
     angle = float(recording[WHEEL_ANGLE][0]) if WHEEL_ANGLE in recording else 0.0
-    start = settled_start(model, torque, dt, recorded, load, angle)
-    channels = simulate(model, torque, dt, start, load_nm=load)
-    if any(EFFECTS[use.id].law.follows is not None for use in model.effects):
-        channels |= _along(model, torque, dt, start, recorded, load)
+    channels = replayed(model, torque, dt, recorded, load, angle)
     refuse_divergence(channels, grid, model)
     if not even:
         channels = {name: np.interp(time, grid, values) for name, values in channels.items()}
@@ -156,6 +153,29 @@ def _along(
     angles = turned(recorded, dt, ratio, start.wheel_angle_rad)
     shown = simulate_many(slots.pack(model)[None], torque, dt, begin, sensors, angles=angles, load_nm=load)
     return {name: np.ascontiguousarray(shown[0, :, column]) for column, name in enumerate(OUTPUTS)}
+
+
+def replayed(
+    model: Model,
+    torque_nm: Array,
+    dt: float,
+    recorded: Array,
+    load_nm: Array | None = None,
+    wheel_angle_rad: float = 0.0,
+) -> dict[str, Array]:
+    """What `replay` simulates, of arrays: channels of shape (n,).
+
+    Args:
+        torque_nm: shape (n,), held for `dt` seconds each.
+        recorded: n x 3, in the order of `OUTPUTS`; NaN where a channel was not recorded.
+        load_nm: shape (n,), brakes the wheels.
+        wheel_angle_rad: at the first sample.
+    """
+    start = settled_start(model, torque_nm, dt, recorded, load_nm, wheel_angle_rad)
+    channels = simulate(model, torque_nm, dt, start, load_nm=load_nm)
+    if any(EFFECTS[use.id].law.follows is not None for use in model.effects):
+        channels |= _along(model, torque_nm, dt, start, recorded, load_nm)
+    return channels
 
 
 def load_of(model: Model, recording: Recording) -> Array | None:
