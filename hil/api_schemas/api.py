@@ -67,6 +67,9 @@ class Health(_Data):
         "",
         description="address of the stop post, which is independent of the service; '' if not available",
     )
+    sign_in: str = Field(
+        "", description="name of the provider where people sign in by OpenID Connect; '' for tokens only"
+    )
     audit_problem: str = Field("", description="fault of the audit log; '' if it is unchanged")
     kept_apart: int = Field(0, description="files of an earlier version's folder that are not shared")
 

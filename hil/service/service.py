@@ -39,6 +39,7 @@ from hil.service.jobs.studies import Studies
 from hil.service.live.live_hub import LiveHub
 from hil.service.owners import OwnersKnown
 from hil.service.queue import Queue
+from hil.service.sign_in import SignIn
 from hil.service.stop_post import StopPost
 from hil.service.stops import Stops
 from hil.service.store import (
@@ -50,6 +51,7 @@ from hil.service.store import (
     LeaseStore,
     LogStore,
     NoteStore,
+    PersonStore,
     Presence,
     ResultStore,
     RunList,
@@ -85,6 +87,7 @@ class Service:
         archive: where files are kept for good; None keeps them in the folder.
         local_days: how long files that the archive has stay in the folder.
         stop_post: takes emergency stops whatever becomes of this.
+        sign_in: signs people in by OpenID Connect; None: there are tokens only.
 
     Raises:
         BenchError: another service drives one of the benches, or the database is away.
@@ -100,6 +103,7 @@ class Service:
         archive: Archive | None = None,
         local_days: float = 30.0,
         stop_post: StopPost | None = None,
+        sign_in: SignIn | None = None,
     ) -> None:
         self._own, self._folder = benches, folder
         self.database = Presence(engine)
@@ -107,6 +111,7 @@ class Service:
         self.layouts = LayoutStore(engine)
         self.notes = NoteStore(engine)
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
+        self.people, self.sign_in = PersonStore(engine), sign_in
         given = GivenStore(engine)
         models = Uploads(given, "model", folder / "given/models", ".toml")
         controllers = Uploads(given, "controller", folder / "given/plans", ".toml")
@@ -135,7 +140,7 @@ class Service:
             self.keeper = Keeper(archive, files, held.service, runs_folder, self.live_hub.runs, local_days)
         source, changed = self.plans.source, self.live_hub.changed
         self.queue = Queue(benches, self.runs, self.leases, held, runs_folder, source, changed, stop_post)
-        self.owners = OwnersKnown(self.tokens, stop_post)
+        self.owners = OwnersKnown((self.tokens, self.people), stop_post)
         self.stops = Stops(self, stop_post)
         self.began_s = time.monotonic()
         self.closing = False

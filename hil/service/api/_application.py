@@ -24,6 +24,7 @@ from hil.service.api import (
     _run_list,
     _run_views,
     _runs,
+    _sign_in,
     _studies,
     _trends,
 )
@@ -50,6 +51,7 @@ _PARTS = (
     _campaigns,
     _layouts,
     _people,
+    _sign_in,
 )
 
 

@@ -14,6 +14,7 @@ from hil.service.store._presence import DatabaseAwayError, Presence
 from hil.service.store._results import ResultKind, ResultStore, SharedJob
 from hil.service.store._run_list import RunList
 from hil.service.store._runs import NewRun, RunStore
+from hil.service.store._signed_in import PersonStore
 from hil.service.store._tables import Base
 
 __all__ = [
@@ -33,6 +34,7 @@ __all__ = [
     "LogStore",
     "NewRun",
     "NoteStore",
+    "PersonStore",
     "Presence",
     "RegisteredBench",
     "ResultKind",

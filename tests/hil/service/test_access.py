@@ -103,6 +103,10 @@ LEAST = {
     ("GET", "/me"): "viewer",
     ("POST", "/session"): "",
     ("DELETE", "/session"): "",
+    ("GET", "/sign-in"): "",
+    ("GET", "/sign-in/return"): "",
+    ("GET", "/people"): "admin",
+    ("DELETE", "/people/{person}/sessions"): "admin",
     ("GET", "/tokens"): "admin",
     ("POST", "/tokens"): "admin",
     ("DELETE", "/tokens/{token}"): "admin",
@@ -111,7 +115,7 @@ LEAST = {
 #: Names of things that there are not: who may ask hears 404 or 422, nothing is changed.
 _NONE = {"bench": "none", "plan": "none", "run": "2000000000", "token": "2000000000", "name": "x"}
 _NONE |= {"agent": "0" * 32, "order": "0" * 16, "model": "none", "controller": "none"}
-_NONE |= {"study": "2000000000", "campaign": "2000000000", "note": "2000000000", "tag": "x", "kind": "plan"}
+_NONE |= {"study": "2000000000", "campaign": "2000000000", "note": "2000000000", "person": "2000000000", "tag": "x", "kind": "plan"}
 
 
 @pytest.fixture(scope="module")
