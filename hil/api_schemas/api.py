@@ -101,6 +101,18 @@ class RunWanted(_Data):
     )
 
 
+class ReservationData(_Data):
+    """A bench that somebody has for themselves from a moment to another."""
+
+    id: RunId
+    bench: str
+    who: str
+    begins: datetime.datetime
+    ends: datetime.datetime
+    reason: str
+    admitted: list[RunId] = Field([], description="runs of others that may start meanwhile")
+
+
 class RunData(_Data):
     """A run: queued, active or finished."""
 
@@ -126,6 +138,15 @@ class RunData(_Data):
     reason: str = Field("", description="reason of its end, or of waiting")
     dut: str = Field("", description="serial number or name of the tested device, when it is finished")
     files: list[str] = Field([], description="names of its files, when it is finished")
+    expected_start: datetime.datetime | None = Field(
+        None, description="when it is expected to start, while it is queued; null: not known"
+    )
+    expected_end: datetime.datetime | None = Field(
+        None, description="when it is expected to end, while it is queued or running; null: not known"
+    )
+    waits_for: ReservationData | None = Field(
+        None, description="reservation of another person that it waits for, while it is queued"
+    )
 
 
 class RunChange(_Data):

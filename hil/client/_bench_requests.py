@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from hil.api_schemas.api import BenchData, Health, LeaseData, LeaseWanted
+import datetime
+
+from hil.api_schemas.api import BenchData, Health, LeaseData, LeaseWanted, ReservationData, RunData
+from hil.api_schemas.team import HandoverData, HandoverWanted, ReservationWanted
 from hil.client._requests import WITHIN_S, Requests, first_of, part
 from hil.core.errors import BenchError
 
@@ -54,6 +57,37 @@ class BenchRequests(Requests):
     def lease(self, bench: str, for_s: float = 60.0) -> LeaseData:
         """Have a bench for oneself for a while; call it again before it is over to go on."""
         return self._one(LeaseData, "PUT", f"/benches/{part(bench)}/lease", LeaseWanted(for_s=for_s))
+
+    def queue_of(self, bench: str) -> list[RunData]:
+        """Runs that wait for a bench in their order, with when they are expected to start and to end."""
+        return self._several(RunData, f"/benches/{part(bench)}/queue")
+
+    def reservations(self, bench: str) -> list[ReservationData]:
+        """Present and future reservations of a bench, the next first."""
+        return self._several(ReservationData, f"/benches/{part(bench)}/reservations")
+
+    def reserve(
+        self, bench: str, begins: datetime.datetime, ends: datetime.datetime, reason: str
+    ) -> ReservationData:
+        """Reserve a bench between two moments with zones: queued runs of others do not start meanwhile."""
+        wanted = ReservationWanted(begins=begins, ends=ends, reason=reason)
+        return self._one(ReservationData, "POST", f"/benches/{part(bench)}/reservations", wanted)
+
+    def remove_reservation(self, bench: str, reservation: int) -> None:
+        """Remove a reservation of one's own."""
+        self._done("DELETE", f"/benches/{part(bench)}/reservations/{reservation}")
+
+    def admit(self, bench: str, reservation: int, run: int) -> None:
+        """Let a queued run of somebody else start within one's reservation."""
+        self._done("PUT", f"/benches/{part(bench)}/reservations/{reservation}/runs/{run}")
+
+    def handovers(self, bench: str, most: int = 20) -> list[HandoverData]:
+        """Hand-over notes of a bench, newest first."""
+        return self._several(HandoverData, f"/benches/{part(bench)}/handovers?most={most}")
+
+    def add_handover(self, bench: str, wanted: HandoverWanted) -> HandoverData:
+        """Add a note for the next shift."""
+        return self._one(HandoverData, "POST", f"/benches/{part(bench)}/handovers", wanted)
 
     def give_back(self, bench: str) -> BenchData:
         """Give a bench back."""

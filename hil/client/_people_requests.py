@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hil.api_schemas.api import AuditEntry, Me, Role, TokenData, TokenMade, TokenWanted
+from hil.api_schemas.people import PersonData
 from hil.client._requests import Requests
 
 
@@ -20,6 +21,14 @@ class PeopleRequests(Requests):
     def make_token(self, name: str, role: Role, for_days: float = 365.0) -> TokenMade:
         """Make a token that is valid for so many days; its secret is reported this once."""
         return self._one(TokenMade, "POST", "/tokens", TokenWanted(name=name, role=role, for_days=for_days))
+
+    def people(self) -> list[PersonData]:
+        """People who have signed in by OpenID Connect."""
+        return self._several(PersonData, "/people")
+
+    def close_sessions(self, person: int) -> None:
+        """Sign somebody out everywhere."""
+        self._done("DELETE", f"/people/{person}/sessions")
 
     def audit(self, most: int = 100) -> list[AuditEntry]:
         """What was done by whom, newest first."""

@@ -171,6 +171,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         asyncio.create_task(going_on(lambda: in_turns(service.watch_database()))),
         asyncio.create_task(going_on(lambda: in_turns(service.owners.follow(lambda: service.closing)))),
     ]
+    besides.append(asyncio.create_task(going_on(lambda: in_turns(_durations_of(service)))))
     if request.notices is not None:
         watch = NoticeWatch(service, Post(request.folder, request.notices))
         besides.append(asyncio.create_task(going_on(lambda: in_turns(watch.work()))))
@@ -211,6 +212,13 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         if not task.cancelled():
             task.result()  # a mistake of ours in one of them is reported
     await in_turns(service.leave())
+
+
+async def _durations_of(service: Service) -> None:
+    found = service.queue_forecast
+    await service.durations.work(
+        found.present_runs, found.predicted_s, service.changed, lambda: service.closing
+    )
 
 
 def _config(request: ServeRequest, service: Service, post: StopPost) -> uvicorn.Config:
