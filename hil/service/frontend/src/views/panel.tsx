@@ -8,6 +8,7 @@ import { useLive, type Live } from "../live.ts";
 import { benchInSight } from "../shell/stop.tsx";
 import { useStore } from "../store.ts";
 import { Banner, LostNotice } from "./bench-banner.tsx";
+import { NewestHandover } from "./team/handovers.tsx";
 
 const SHOWN = ["motor_speed_rad_s", "vehicle_speed_m_s", "motor_torque_nm", "shaft_torque_nm"];
 const EVERY_MS = 250;
@@ -41,6 +42,7 @@ export function Panel({ bench }: { bench: string }): JSX.Element {
         </section>
       ) : null}
       {state?.queue.length ? <p class="big">{`Next: ${state.queue[0]?.title || state.queue[0]?.plan}, by ${state.queue[0]?.requested_by}${state.queue.length > 1 ? `, and ${state.queue.length - 1} more` : ""}`}</p> : <p class="big quiet">Nothing waits.</p>}
+      <NewestHandover bench={bench} />
       <p><a href={to.bench(bench)}>The bench with its plots, its queue and the form that starts a plan</a></p>
     </div>
   );
