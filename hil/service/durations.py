@@ -28,6 +28,12 @@ class Durations:
         """How long a run will take, s; None if that is not known."""
         return self._known.get(run)
 
+    def at_once(self, run: int) -> float | None:
+        """As `of`, but what was measured is looked up now if it was not yet: a run may start at once."""
+        if run not in self._known:
+            self._known[run] = self._store.measured_s(run)
+        return self._known[run]
+
     async def work(
         self,
         present: Callable[[], Sequence[RunData]],

@@ -26,7 +26,9 @@ class Turns:
         now = _now()
         windows = self.windows(bench, now)
         queue = self._runs.queued(bench, _MOST_LOOKED_AT if windows else 1)
-        may = (run for run in queue if not blocking(run, windows, now, self._durations.of(run.id)))
+        if not windows:
+            return queue[0] if queue else None
+        may = (run for run in queue if not blocking(run, windows, now, self._durations.at_once(run.id)))
         return next(may, None)
 
     def windows(self, bench: str, now: datetime.datetime) -> list[Window]:

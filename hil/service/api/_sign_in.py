@@ -89,7 +89,10 @@ def _opened(service: Service, found: SignIn, signed_in: SignedIn) -> RedirectRes
     if signed_in.role is None:
         service.people.refuse(signed_in.issuer, signed_in.subject)
         service.owners.changed()
-        service.log.add(signed_in.name, "", "sign in refused", "page", f"{subject}: no group has a role")
+        who = f"{signed_in.name[:40]} ({signed_in.subject})"[
+            :100
+        ]  # the name may be that of somebody else here
+        service.log.add(who, "", "sign in refused", "page", f"{subject}: no group has a role")
         raise SignInError("no_role", f"{subject} has no group with a role")
     hours = found.settings.session_hours
     person, secret = service.people.sign_in(

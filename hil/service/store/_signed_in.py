@@ -6,8 +6,8 @@ import datetime
 import hashlib
 import secrets
 
-from sqlalchemy import Engine, delete, func, select
-from sqlalchemy.orm import Session, sessionmaker
+from sqlalchemy import ColumnElement, Engine, delete, func, or_, select
+from sqlalchemy.orm import InstrumentedAttribute, Session, sessionmaker
 
 from hil.api_schemas.api import Role
 from hil.api_schemas.people import PersonData
@@ -25,6 +25,7 @@ class PersonStore:
     """A person is an issuer and a subject; the name, which stands in queue and reports, is theirs alone.
 
     A session is worth what the person's role is now: the next sign-in, on any machine, changes that of all.
+    A name stays, whatever the provider calls somebody later: else they could approve what they asked for.
     """
 
     def __init__(self, engine: Engine) -> None:
@@ -39,8 +40,8 @@ class PersonStore:
         with self._transaction() as session:
             row = _row(session, issuer, subject)
             if row is None:
-                row = PersonRow(issuer=issuer, subject=subject, name="")
-            row.name, row.role, row.signed_in_at = _own_name(session, row, name), role, moment
+                row = PersonRow(issuer=issuer, subject=subject, name=_own_name(session, subject, name))
+            row.role, row.signed_in_at = role, moment
             session.add(row)
             session.flush()
             session.execute(delete(PersonSessionRow).where(PersonSessionRow.until < moment))
@@ -92,21 +93,20 @@ def _row(session: Session, issuer: str, subject: str) -> PersonRow | None:
     return session.scalars(chosen).first()
 
 
-def _own_name(session: Session, row: PersonRow, name: str) -> str:
+def _own_name(session: Session, subject: str, name: str) -> str:
     """The name, with the subject behind it where somebody else or a token has it: no one acts as another."""
-    kept = name[: _LONGEST_NAME - len(row.subject) - 3] if len(row.subject) < 80 else name[:15]
-    with_subject = f"{kept} ({row.subject})"[:_LONGEST_NAME]
-    if row.name in (name, with_subject):
-        return row.name
-    people = select(func.count()).select_from(PersonRow).where(PersonRow.id != (row.id or 0))
-    tokens = select(func.count()).select_from(TokenRow)
-    for own in (name, with_subject):
-        lower = own.lower()
-        if not session.scalar(people.where(func.lower(PersonRow.name) == lower)) and not session.scalar(
-            tokens.where(func.lower(TokenRow.name) == lower)
-        ):
+    kept = name[: max(15, _LONGEST_NAME - len(subject) - 3)]
+    for own in (name, f"{kept} ({subject})"[:_LONGEST_NAME]):
+        people = select(PersonRow.id).where(_is(PersonRow.name, own))
+        tokens = select(TokenRow.id).where(_is(TokenRow.name, own))
+        if session.scalar(people) is None and session.scalar(tokens) is None:
             return own
     return f"{name[:60]} {secrets.token_hex(8)}"
+
+
+def _is(column: InstrumentedAttribute[str], name: str) -> ColumnElement[bool]:
+    """Whether it is the same name, in whatever case; SQLite knows that of ASCII only."""
+    return or_(column == name, func.lower(column) == name.lower())
 
 
 def _hashed(secret: str) -> str:

@@ -90,6 +90,21 @@ def test_whose_turn_it_is_within_a_reservation(engine: Engine) -> None:
     assert turns.next_of("sim") is None
 
 
+def test_a_run_that_took_longer_before_does_not_start_before_a_reservation(engine: Engine) -> None:
+    begun = datetime.datetime(2026, 11, 28, tzinfo=datetime.UTC)
+    same = {"bench": "sim", "plan": "p", "plan_text": "t", "requested_by": "anna"}
+    ended = {"started_at": begun, "ended_at": begun + 2 * _HOUR, "state": "ended", "verdict": "pass"}
+    queued = {"started_at": None, "ended_at": None, "state": "queued", "verdict": None}
+    with sessionmaker(engine).begin() as session:
+        for row in ({"id": 1} | ended, {"id": 2} | queued, {"id": 3, "plan_text": "shorter"} | queued):
+            session.execute(insert(_RUNS), [a_run(1) | same | row])
+    reservations = ReservationStore(engine)
+    turns = Turns(RunStore(engine), LeaseStore(engine), reservations, Durations(DurationStore(engine)))
+    assert turns.next_of("sim").id == 2
+    reservations.add("sim", "bert", _wanted(1, 2))
+    assert turns.next_of("sim").id == 3
+
+
 def test_a_run_takes_as_long_as_the_newest_of_the_same_plan(engine: Engine) -> None:
     begun = datetime.datetime(2026, 11, 28, tzinfo=datetime.UTC)
     rows = []

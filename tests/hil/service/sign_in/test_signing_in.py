@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import http.client
+import os
 import urllib.parse
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -142,7 +143,7 @@ def test_a_person_without_a_known_group_is_not_let_in(there: Served, identities:
     browser = Browser(there)
     assert browser.sign_in(identities, "guest") == "/?sign_in=no_role"
     assert browser.me() == 401
-    [row] = [one for one in there.get("/audit") if one["who"] == "A guest"]
+    [row] = [one for one in there.get("/audit") if one["who"] == "A guest (guest)"]
     assert (row["action"], row["role"]) == ("sign in refused", "")
 
 
@@ -173,7 +174,8 @@ def test_without_tokens_nobody_is_let_in_who_has_not_signed_in(
     identities: AnyProvider, tmp_path: Path
 ) -> None:
     identities.add("chief", name="Chief", groups=["chiefs"])
-    with served_with(tmp_path, identities.url) as service:
+    log = tmp_path / "serve.log"
+    with served_with(tmp_path, identities.url, "", "--log", str(log)) as service:
         with pytest.raises(RefusedError) as refused:
             service.get("/benches")
         assert refused.value.status == 401
@@ -181,6 +183,12 @@ def test_without_tokens_nobody_is_let_in_who_has_not_signed_in(
         browser = Browser(service)
         browser.sign_in(identities, "chief")
         assert browser.ask("GET", "/api/v1/audit")[0] == 200
+        answer = identities.answer(browser.begin(), "chief")
+        browser.come_back(answer | {"code": "guessed"})
+    kept = log.read_text()
+    assert "a sign-in is refused" in kept
+    secrets = [os.environ[SECRET_ENV], *answer.values(), *browser.cookies.values()]
+    assert [one for one in secrets if len(one) > 2 and one in kept] == []
 
 
 def test_a_service_without_the_setting_has_no_sign_in(service: Served) -> None:
