@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import datetime
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-from hil.api_schemas.api import Role, RunId
+from hil.api_schemas.api import Role, RunId, _Data
 
 
-class PersonData(BaseModel):
+class PersonData(_Data):
     """A person who has signed in; the name is theirs alone, whatever the provider calls others."""
-
-    model_config = ConfigDict(extra="forbid")
 
     id: RunId
     issuer: str = Field(description="the provider's URL")

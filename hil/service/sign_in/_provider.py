@@ -103,7 +103,8 @@ class Provider:
             claims.validate(leeway=_LEEWAY_S)
         except JoseError as error:
             raise SignInError("token", f"the ID token is refused: {printable(str(error), 200)}") from None
-        if not isinstance(claims["sub"], str) or not 1 <= len(claims["sub"]) <= 255:
+        subject = claims["sub"]
+        if not isinstance(subject, str) or not 1 <= len(subject) <= 255 or not subject.isprintable():
             raise SignInError("token", "the ID token is refused: sub is no text of 1 to 255 characters")
         return dict(claims)
 

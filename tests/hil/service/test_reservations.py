@@ -1,20 +1,14 @@
-"""Reservations, which never meet and for which runs of others wait; hand-over notes; who is there."""
+"""Reservations, which never meet and for which runs of others wait; durations; hand-over notes."""
 
 from __future__ import annotations
 
 import datetime
-import http.client
-import json
-from collections.abc import Iterator
-from urllib.parse import urlsplit
 
 import pytest
 from sqlalchemy import Engine, insert, update
 from sqlalchemy.orm import sessionmaker
 
 from hil.api_schemas.team import HandoverWanted, ReservationWanted
-from hil.client import Client, RefusedError
-from hil.client import RunWanted as Wanted
 from hil.core.errors import BadInputError
 from hil.service.durations import Durations
 from hil.service.store import (
@@ -26,8 +20,6 @@ from hil.service.store import (
     RunStore,
 )
 from hil.service.turns import Turns
-from tests.hil.service.served import SHORT, Served
-from tests.hil.service.test_access import tokens as tokens  # a service with people of every role
 from tests.hil.service.test_run_list import a_run
 
 _RUNS = Base.metadata.tables["runs"]
@@ -69,6 +61,23 @@ def test_two_reservations_never_meet(engine: Engine) -> None:
 def test_a_reservation_has_a_length(begins: float, ends: float) -> None:
     with pytest.raises(ValueError, match="31 days"):
         _wanted(begins, ends)
+
+
+@pytest.mark.parametrize(
+    "moment", ["0001-01-01T00:00:00+14:00", "9999-12-31T23:59:59-14:00", "2026-11-28T08:00"]
+)
+def test_a_moment_is_of_our_time_and_has_a_zone(moment: str) -> None:
+    with pytest.raises(ValueError, match="years are|timezone"):
+        ReservationWanted.model_validate({"begins": moment, "ends": moment, "reason": "x"})
+
+
+@pytest.mark.parametrize("text", ["", "   ", "\n", "a\0b"])
+def test_a_note_and_a_reason_say_something(text: str) -> None:
+    day = datetime.date(2026, 11, 28)
+    with pytest.raises(ValueError, match="text"):
+        HandoverWanted(day=day, shift="early", text=text)
+    with pytest.raises(ValueError, match="reason"):
+        _wanted(1, 2, text)
 
 
 def test_whose_turn_it_is_within_a_reservation(engine: Engine) -> None:
@@ -133,92 +142,3 @@ def test_hand_over_notes_come_newest_first_and_stay(engine: Engine) -> None:
     assert store.of("sim", second.id, 10) == [first]
     assert store.of("sim", 2**31 - 1, 1) == [second]
     assert (first.day, first.shift, first.text) == (day, "early", "oil changed\nruns 1 to 4")
-
-
-@pytest.fixture
-def clients(tokens: tuple[Served, dict[str, str]]) -> Iterator[dict[str, Client]]:
-    service, secrets = tokens
-    found = {role: Client(service.url, secrets[role]) for role in ("viewer", "operator", "engineer", "admin")}
-    yield found
-    for bench in found["admin"].reservations("sim"):
-        found["admin"].remove_reservation("sim", bench.id)
-
-
-@pytest.mark.slow
-def test_a_queued_run_waits_for_a_reservation_and_says_why(
-    clients: dict[str, Client], tokens: tuple[Served, dict[str, str]]
-) -> None:
-    operator, engineer, admin = clients["operator"], clients["engineer"], clients["admin"]
-    engineer.give_plan("short", SHORT)
-    held = engineer.reserve("sim", _now() - _HOUR / 60, _now() + _HOUR, "endurance")
-    run = operator.queue(Wanted(plan="short", bench="sim"))
-    [waiting] = operator.queue_of("sim")
-    assert waiting.waits_for == held
-    assert waiting.expected_start == held.ends
-    assert operator.run(run.id).waits_for == held
-    own = engineer.queue(Wanted(plan="short", bench="sim"))
-    *_, last = engineer.progress(own.id)
-    assert last.verdict == "pass"
-    assert operator.run(run.id).state == "queued"
-    with pytest.raises(RefusedError, match="the engineer has reserved the bench from .* to .*: endurance"):
-        operator.reserve("sim", _now(), _now() + _HOUR, "mine")
-    with pytest.raises(RefusedError, match="the engineer has reserved the bench"):
-        operator.lease("sim")
-    for refused in (
-        lambda: operator.remove_reservation("sim", held.id),
-        lambda: operator.admit("sim", held.id, run.id),
-    ):
-        with pytest.raises(RefusedError, match="the reservation is the engineer's"):
-            refused()
-    engineer.admit("sim", held.id, run.id)
-    *_, last = operator.progress(run.id)
-    assert last.verdict == "pass"
-    third = operator.queue(Wanted(plan="short", bench="sim"))
-    admin.remove_reservation("sim", held.id)
-    *_, last = operator.progress(third.id)
-    assert last.verdict == "pass"
-    done = [one.action for one in admin.audit(30)]
-    assert {"reserve", "run admitted", "reservation removed"} <= set(done)
-
-
-@pytest.mark.slow
-def test_a_reservation_is_refused_while_somebody_has_a_lease(clients: dict[str, Client]) -> None:
-    clients["operator"].lease("sim", 3600)
-    with pytest.raises(RefusedError, match="the operator holds the bench until"):
-        clients["engineer"].reserve("sim", _now(), _now() + _HOUR, "mine")
-    clients["operator"].reserve("sim", _now() + 2 * _HOUR, _now() + 3 * _HOUR, "mine")
-    clients["operator"].give_back("sim")
-
-
-@pytest.mark.slow
-def test_those_who_watch_a_bench_are_named(
-    clients: dict[str, Client], tokens: tuple[Served, dict[str, str]]
-) -> None:
-    service, secrets = tokens
-    first = _watch(service, secrets["viewer"])
-    assert next(first)["viewers"] == ["the viewer"]
-    second = _watch(service, secrets["operator"])
-    assert next(second)["viewers"] == ["the operator", "the viewer"]
-    while (names := next(first)["viewers"]) == ["the viewer"]:
-        continue
-    assert names == ["the operator", "the viewer"]
-    second.close()
-    while (names := next(first)["viewers"]) != ["the viewer"]:
-        continue
-    first.close()
-
-
-def _watch(service: Served, token: str):
-    """What a viewer of the bench is told of its state."""
-    where = urlsplit(service.url)
-    connection = http.client.HTTPConnection(where.hostname or "", where.port, timeout=60)
-    try:
-        connection.request("GET", "/api/v1/benches/sim/live", headers={"authorization": f"Bearer {token}"})
-        with connection.getresponse() as answer:
-            is_state = False
-            while line := answer.readline().decode():
-                if line.startswith("data:") and is_state:
-                    yield json.loads(line[5:])
-                is_state = line.strip() == "event: state" if line.startswith("event:") else is_state
-    finally:
-        connection.close()
