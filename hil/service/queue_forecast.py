@@ -19,6 +19,7 @@ class QueueForecast:
 
     def __init__(self, service: Service) -> None:
         self._service = service
+        self._shown: dict[str, str] = {}  # whose reservation of a bench is under way, as it was last
 
     def of_run(self, run: RunData) -> RunData:
         """A run with when it is expected to start and to end, where this service knows its bench."""
@@ -37,6 +38,20 @@ class QueueForecast:
         free_at = datetime.datetime.now(datetime.UTC) if free else self._end_on(bench)
         found = self._service.turns.expected(bench, free_at, _MOST_SHOWN)
         return [_with(run, found.get(run.id, Expected())) for run in runs]
+
+    def reserved_by(self, bench: str) -> str:
+        """Whose reservation of a bench is under way; '' if no one's is."""
+        now = datetime.datetime.now(datetime.UTC)
+        present = (one.who for one in self._service.reservations.of(bench) if one.begins <= now)
+        return next(present, "")
+
+    def show_reservations(self) -> None:
+        """Have benches shown anew of which a reservation has begun or is over."""
+        for bench in list(self._service.benches):
+            present = self.reserved_by(bench)
+            if self._shown.get(bench, "") != present:
+                self._shown[bench] = present
+                self._service.changed(bench)
 
     def present_runs(self) -> list[RunData]:
         """Runs that are under way here, and the first that wait for each bench."""

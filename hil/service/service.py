@@ -77,11 +77,12 @@ logger = logging.getLogger(__name__)
 
 @dataclass
 class Waiting:
-    """What the store has of a bench: runs that wait, in their order, how many they are, and a lease."""
+    """What the store has of a bench: runs that wait, in their order, how many they are, and whose it is."""
 
     runs: list[RunData] = field(default_factory=list)
     count: int = 0
     lease: str = ""
+    reserved_by: str = ""
 
 
 class Service:
@@ -215,6 +216,7 @@ class Service:
             limits=bench.limits,
             units=bench.units,
             lease=waiting.lease,
+            reserved_by=waiting.reserved_by,
             machine=agent.machine if agent else "",
             stop_confirmed=not (isinstance(bench, RemoteBench) and bench.stop_by),
             away_since=agent.heard_at if agent and agent.away else None,
@@ -229,7 +231,8 @@ class Service:
             )
             found.sort(key=lambda run: (-run.priority, run.id))
             found = self.queue_forecast.of_queue(bench, found)
-            self._waiting[bench] = Waiting(found, self.runs.waiting(bench), lease.holder if lease else "")
+            holder, whose = lease.holder if lease else "", self.queue_forecast.reserved_by(bench)
+            self._waiting[bench] = Waiting(found, self.runs.waiting(bench), holder, whose)
         return self._waiting[bench]
 
     def with_progress(self, run: RunData) -> RunData:

@@ -16,7 +16,7 @@ from pathlib import Path
 import uvicorn
 from sqlalchemy import Engine
 
-from hil.api_schemas.api import ROLES, Role, TokenMade
+from hil.api_schemas.api import ROLES, Role, RunData, TokenMade
 from hil.core.errors import BadInputError, BenchError
 from hil.core.errors.wording import printable
 from hil.engine import StopRequest
@@ -216,9 +216,12 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
 
 async def _durations_of(service: Service) -> None:
     found = service.queue_forecast
-    await service.durations.work(
-        found.present_runs, found.predicted_s, service.changed, lambda: service.closing
-    )
+
+    def present() -> list[RunData]:
+        found.show_reservations()
+        return found.present_runs()
+
+    await service.durations.work(present, found.predicted_s, service.changed, lambda: service.closing)
 
 
 def _config(request: ServeRequest, service: Service, post: StopPost) -> uvicorn.Config:

@@ -43,6 +43,7 @@ def test_a_queued_run_waits_for_a_reservation_and_says_why(
     assert waiting.waits_for == held
     assert waiting.expected_start == held.ends
     assert operator.run(run.id).waits_for == held
+    assert operator.bench("sim").reserved_by == "the engineer"
     own = engineer.queue(Wanted(plan="short", bench="sim"))
     *_, last = engineer.progress(own.id)
     assert last.verdict == "pass"
@@ -89,6 +90,22 @@ def test_those_who_watch_a_bench_are_named(
     while (names := next(first)["viewers"]) != ["the viewer"]:
         continue
     first.close()
+
+
+def test_those_who_watch_see_a_reservation_begin_and_end(
+    clients: dict[str, Client], tokens: tuple[Served, dict[str, str]]
+) -> None:
+    service, secrets = tokens
+    states = _watch(service, secrets["viewer"])
+    assert next(states)["bench"]["reserved_by"] == ""
+    second = datetime.timedelta(seconds=1)
+    now = datetime.datetime.now(datetime.UTC)
+    clients["engineer"].reserve("sim", now + 2 * second, now + 5 * second, "soon, and short")
+    while next(states)["bench"]["reserved_by"] != "the engineer":
+        continue
+    while next(states)["bench"]["reserved_by"] != "":
+        continue
+    states.close()
 
 
 def _watch(service: Served, token: str):

@@ -53,6 +53,7 @@ def test_a_bench_is_reserved_handed_over_and_a_run_is_let_in(page: playwright.Pa
     button.click()
     expect(region(page, "Reservations")).to_contain_text("anna: endurance of axle 7")
     expect(region(page, "Reservations")).to_contain_text("now, until")
+    expect(page.get_by_text("reserved by anna")).to_be_visible()
     bert.queue(RunWanted(plan="short", bench="sim"))
     waiting = region(page, "Queue")
     expect(waiting).to_contain_text(
