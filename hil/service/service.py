@@ -28,6 +28,7 @@ from hil.service.agents.remote_bench import RemoteBench
 from hil.service.agents.run_upload import RunUploads
 from hil.service.archive import Archive, Keeper, Rounds
 from hil.service.audit import DeferredAudit, problem_of
+from hil.service.durations import Durations
 from hil.service.files.catalogues import controller_catalogue, model_catalogue
 from hil.service.files.legacy_import import LegacyImport
 from hil.service.files.plans import Plans
@@ -39,23 +40,30 @@ from hil.service.jobs.studies import Studies
 from hil.service.live.live_hub import LiveHub
 from hil.service.owners import OwnersKnown
 from hil.service.queue import Queue
+from hil.service.queue_forecast import QueueForecast
+from hil.service.sign_in import SignIn
 from hil.service.stop_post import StopPost
 from hil.service.stops import Stops
 from hil.service.store import (
     BenchStore,
     DatabaseAwayError,
+    DurationStore,
     FileStore,
     GivenStore,
+    HandoverStore,
     LayoutStore,
     LeaseStore,
     LogStore,
     NoteStore,
+    PersonStore,
     Presence,
+    ReservationStore,
     ResultStore,
     RunList,
     RunStore,
     TokenStore,
 )
+from hil.service.turns import Turns
 from hil.service.worker_pool import WorkerPool
 from test_plans import Plan
 
@@ -69,11 +77,12 @@ logger = logging.getLogger(__name__)
 
 @dataclass
 class Waiting:
-    """What the store has of a bench: runs that wait, in their order, how many they are, and a lease."""
+    """What the store has of a bench: runs that wait, in their order, how many they are, and whose it is."""
 
     runs: list[RunData] = field(default_factory=list)
     count: int = 0
     lease: str = ""
+    reserved_by: str = ""
 
 
 class Service:
@@ -85,6 +94,7 @@ class Service:
         archive: where files are kept for good; None keeps them in the folder.
         local_days: how long files that the archive has stay in the folder.
         stop_post: takes emergency stops whatever becomes of this.
+        sign_in: signs people in by OpenID Connect; None: there are tokens only.
 
     Raises:
         BenchError: another service drives one of the benches, or the database is away.
@@ -100,13 +110,19 @@ class Service:
         archive: Archive | None = None,
         local_days: float = 30.0,
         stop_post: StopPost | None = None,
+        sign_in: SignIn | None = None,
     ) -> None:
         self._own, self._folder = benches, folder
         self.database = Presence(engine)
         self.runs, self.run_list, self.leases = RunStore(engine), RunList(engine), LeaseStore(engine)
+        self.reservations, self.handovers = ReservationStore(engine), HandoverStore(engine)
+        self.durations = Durations(DurationStore(engine))
+        self.turns = Turns(self.runs, self.leases, self.reservations, self.durations)
+        self.queue_forecast = QueueForecast(self)
         self.layouts = LayoutStore(engine)
         self.notes = NoteStore(engine)
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
+        self.people, self.sign_in = PersonStore(engine), sign_in
         given = GivenStore(engine)
         models = Uploads(given, "model", folder / "given/models", ".toml")
         controllers = Uploads(given, "controller", folder / "given/plans", ".toml")
@@ -134,13 +150,13 @@ class Service:
             files = FileStore(engine)
             self.keeper = Keeper(archive, files, held.service, runs_folder, self.live_hub.runs, local_days)
         source, changed = self.plans.source, self.live_hub.changed
-        self.queue = Queue(benches, self.runs, self.leases, held, runs_folder, source, changed, stop_post)
-        self.owners = OwnersKnown(self.tokens, stop_post)
+        self.queue = Queue(benches, self.runs, self.turns, held, runs_folder, source, changed, stop_post)
+        self.owners = OwnersKnown((self.tokens, self.people), stop_post)
         self.stops = Stops(self, stop_post)
         self.began_s = time.monotonic()
         self.closing = False
         self._waiting: defaultdict[str, Waiting] = defaultdict(Waiting)
-        self.agents = Agents(engine, held.service, self.runs, self.leases, runs_folder, source, changed)
+        self.agents = Agents(engine, held.service, self.runs, self.turns, runs_folder, source, changed)
         self.agents_forecasts = AgentsForecasts()
         self.run_uploads = RunUploads(held.service, self.runs, runs_folder)
         self.audit_problem = ""
@@ -200,6 +216,7 @@ class Service:
             limits=bench.limits,
             units=bench.units,
             lease=waiting.lease,
+            reserved_by=waiting.reserved_by,
             machine=agent.machine if agent else "",
             stop_confirmed=not (isinstance(bench, RemoteBench) and bench.stop_by),
             away_since=agent.heard_at if agent and agent.away else None,
@@ -213,7 +230,9 @@ class Service:
                 bench=bench, states=("queued", "waiting_approval"), before=_LAST, most=_MOST_SHOWN
             )
             found.sort(key=lambda run: (-run.priority, run.id))
-            self._waiting[bench] = Waiting(found, self.runs.waiting(bench), lease.holder if lease else "")
+            found = self.queue_forecast.of_queue(bench, found)
+            holder, whose = lease.holder if lease else "", self.queue_forecast.reserved_by(bench)
+            self._waiting[bench] = Waiting(found, self.runs.waiting(bench), holder, whose)
         return self._waiting[bench]
 
     def with_progress(self, run: RunData) -> RunData:

@@ -16,7 +16,7 @@ from pathlib import Path
 import uvicorn
 from sqlalchemy import Engine
 
-from hil.api_schemas.api import ROLES, Role, TokenMade
+from hil.api_schemas.api import ROLES, Role, RunData, TokenMade
 from hil.core.errors import BadInputError, BenchError
 from hil.core.errors.wording import printable
 from hil.engine import StopRequest
@@ -28,6 +28,7 @@ from hil.service.archive import Archive
 from hil.service.jobs.campaigns import Simulating
 from hil.service.notices import NoticeSettings, NoticeWatch, Post
 from hil.service.service import Service
+from hil.service.sign_in import SignIn, SignInSettings
 from hil.service.stop_post import StopPost
 from hil.service.store import BenchStore, LogStore, TokenStore, in_turns, open_database
 
@@ -65,6 +66,7 @@ class ServeRequest:
         rate: requests that an address may send a second, in the long run.
         for_s: ends by itself after this many seconds.
         notices: who gets which; None: they are not sent.
+        sign_in: where people sign in by OpenID Connect; None: there are tokens only.
         ready: called with the URL once it answers.
     """
 
@@ -83,6 +85,7 @@ class ServeRequest:
     rate: float = 40.0
     for_s: float = math.inf
     notices: NoticeSettings | None = None
+    sign_in: SignInSettings | None = None
     ready: Callable[[str], None] = lambda url: None
     stop: StopRequest = field(default_factory=StopRequest)
 
@@ -99,7 +102,9 @@ def serve(request: ServeRequest) -> None:
     with alone_in(request.folder, who="service", fix=_OTHER_FOLDER):
         engine = _database(request.folder, request.database, _LOCKED_S)
         try:
-            _refuse_open_to_all(request.host, TokenStore(engine))
+            sign_in = SignIn(request.sign_in) if request.sign_in is not None else None
+            if sign_in is None:
+                _refuse_open_to_all(request.host, TokenStore(engine))
             with (
                 _listening(request.host, request.port, "--port") as listening,
                 _listening(request.host, _stop_port(request), "--stop-port") as stop_listening,
@@ -115,6 +120,7 @@ def serve(request: ServeRequest) -> None:
                     archive,
                     request.local_days,
                     post,
+                    sign_in,
                 )
                 asyncio.run(_served(request, service, listening, post))
         finally:
@@ -165,6 +171,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         asyncio.create_task(going_on(lambda: in_turns(service.watch_database()))),
         asyncio.create_task(going_on(lambda: in_turns(service.owners.follow(lambda: service.closing)))),
     ]
+    besides.append(asyncio.create_task(going_on(lambda: in_turns(_durations_of(service)))))
     if request.notices is not None:
         watch = NoticeWatch(service, Post(request.folder, request.notices))
         besides.append(asyncio.create_task(going_on(lambda: in_turns(watch.work()))))
@@ -205,6 +212,16 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         if not task.cancelled():
             task.result()  # a mistake of ours in one of them is reported
     await in_turns(service.leave())
+
+
+async def _durations_of(service: Service) -> None:
+    found = service.queue_forecast
+
+    def present() -> list[RunData]:
+        found.show_reservations()
+        return found.present_runs()
+
+    await service.durations.work(present, found.predicted_s, service.changed, lambda: service.closing)
 
 
 def _config(request: ServeRequest, service: Service, post: StopPost) -> uvicorn.Config:
@@ -267,7 +284,8 @@ def _refuse_open_to_all(host: str, tokens: TokenStore) -> None:
         raise BadInputError(
             "there is no token yet, so anyone who reaches this address could drive the benches",
             where=f"--host {printable(host)}",
-            fix="make one first: hil serve --data DIR --add-token NAME=admin; or leave --host out",
+            fix="make one first: hil serve --data DIR --add-token NAME=admin; or give --sign-in FILE; "
+            "or leave --host out",
         )
 
 

@@ -282,6 +282,12 @@ class Serve:
         Path | None,
         typer.Option(metavar="FILE", help="TOML file of webhooks and mail for runs that end, fail or wait"),
     ] = None
+    sign_in: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="TOML file: where people sign in by OpenID Connect, and their roles"
+        ),
+    ] = None
     test_notices: Annotated[
         bool, typer.Option("--test-notices", help="send a test to everyone in --notices, print it and exit")
     ] = False

@@ -14,6 +14,7 @@ from hil.service.api import (
     _campaigns,
     _comparisons,
     _design,
+    _handovers,
     _health,
     _layouts,
     _live,
@@ -21,9 +22,11 @@ from hil.service.api import (
     _page,
     _people,
     _plans,
+    _reservations,
     _run_list,
     _run_views,
     _runs,
+    _sign_in,
     _studies,
     _trends,
 )
@@ -36,6 +39,8 @@ PREFIX = "/api/v1"
 _PARTS = (
     _health,
     _benches,
+    _reservations,
+    _handovers,
     _agents,
     _live,
     _plans,
@@ -50,6 +55,7 @@ _PARTS = (
     _campaigns,
     _layouts,
     _people,
+    _sign_in,
 )
 
 

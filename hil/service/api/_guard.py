@@ -22,6 +22,7 @@ _EMERGENCY = "/emergency-stop"
 _PLAIN_NAME = re.compile(r"[A-Za-z0-9.:-]{1,255}")
 _MOST_ADDRESSES = 10_000
 _SAFE = ("GET", "HEAD", "OPTIONS")
+_OTHER_SITES = ("cross-site", "same-site")
 _POLICY = (
     "default-src 'self'; img-src 'self' data:; object-src 'none'; base-uri 'none'; "
     "frame-ancestors 'none'; form-action 'self'"
@@ -99,6 +100,8 @@ class Guard:
             return 421, "unknown host name; start the service with --allow-host NAME"
         origin = headers.get("origin")
         if origin is not None and scope["method"] not in _SAFE and urlsplit(origin).netloc != host:
+            return 403, "the request comes from another site's page"
+        if headers.get("sec-fetch-site") in _OTHER_SITES and scope["method"] not in _SAFE:
             return 403, "the request comes from another site's page"
         if not _fits(headers.get("content-length", "0"), _most(scope)):
             return 413, f"at most {_most(scope)} bytes are accepted"

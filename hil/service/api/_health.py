@@ -31,6 +31,7 @@ async def health(service: TheService, request: Request) -> Health:
         store_problem=(keeper.rounds.problem or service.sharing.problem) if keeper else "",
         kept_apart=len(service.kept_apart),
         audit_problem=service.audit_problem,
+        sign_in=service.sign_in.settings.name if service.sign_in is not None else "",
         stop_url=stop.seen_from(request.headers.get("host", "")) if up else "",
     )
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import datetime
 from typing import Any
 
-from sqlalchemy import BigInteger, ColumnElement, DateTime, Double, Index, String, Text
+from sqlalchemy import BigInteger, ColumnElement, DateTime, Double, Index, String, Text, UniqueConstraint
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import DeclarativeBase, Mapped, Session, mapped_column
 
@@ -193,6 +193,30 @@ class SessionRow(Base):
 
     sha256: Mapped[str] = mapped_column(String(64), primary_key=True)
     token: Mapped[int]
+    until: Mapped[datetime.datetime] = mapped_column(_MOMENT)
+
+
+class PersonRow(Base):
+    """Somebody whom a provider has vouched for; `role` as their groups had it when they signed in last."""
+
+    __tablename__ = "people"
+    __table_args__ = (UniqueConstraint("issuer", "subject", name="people_by_subject"),)
+
+    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
+    issuer: Mapped[str] = mapped_column(String(300))
+    subject: Mapped[str] = mapped_column(String(255))
+    name: Mapped[str] = mapped_column(String(100), unique=True)
+    role: Mapped[str] = mapped_column(String(10))
+    signed_in_at: Mapped[datetime.datetime] = mapped_column(_MOMENT)
+
+
+class PersonSessionRow(Base):
+    """A page at which somebody has signed in; `sha256` of what is in its cookie, 256 random bits."""
+
+    __tablename__ = "person_sessions"
+
+    sha256: Mapped[str] = mapped_column(String(64), primary_key=True)
+    person: Mapped[int]
     until: Mapped[datetime.datetime] = mapped_column(_MOMENT)
 
 

@@ -29,6 +29,13 @@ LEAST = {
     ("PUT", "/benches/{bench}/lease"): "operator",
     ("DELETE", "/benches/{bench}/lease"): "operator",
     ("GET", "/benches/{bench}/live"): "viewer",
+    ("GET", "/benches/{bench}/queue"): "viewer",
+    ("GET", "/benches/{bench}/reservations"): "viewer",
+    ("POST", "/benches/{bench}/reservations"): "operator",
+    ("DELETE", "/benches/{bench}/reservations/{reservation}"): "operator",
+    ("PUT", "/benches/{bench}/reservations/{reservation}/runs/{run}"): "operator",
+    ("GET", "/benches/{bench}/handovers"): "viewer",
+    ("POST", "/benches/{bench}/handovers"): "operator",
     ("DELETE", "/benches/{bench}/agent"): "engineer",
     ("GET", "/agents"): "viewer",
     ("PUT", "/agents/{agent}"): "agent",
@@ -103,6 +110,10 @@ LEAST = {
     ("GET", "/me"): "viewer",
     ("POST", "/session"): "",
     ("DELETE", "/session"): "",
+    ("GET", "/sign-in"): "",
+    ("GET", "/sign-in/return"): "",
+    ("GET", "/people"): "admin",
+    ("DELETE", "/people/{person}/sessions"): "admin",
     ("GET", "/tokens"): "admin",
     ("POST", "/tokens"): "admin",
     ("DELETE", "/tokens/{token}"): "admin",
@@ -111,7 +122,15 @@ LEAST = {
 #: Names of things that there are not: who may ask hears 404 or 422, nothing is changed.
 _NONE = {"bench": "none", "plan": "none", "run": "2000000000", "token": "2000000000", "name": "x"}
 _NONE |= {"agent": "0" * 32, "order": "0" * 16, "model": "none", "controller": "none"}
-_NONE |= {"study": "2000000000", "campaign": "2000000000", "note": "2000000000", "tag": "x", "kind": "plan"}
+_NONE |= {
+    "study": "2000000000",
+    "campaign": "2000000000",
+    "note": "2000000000",
+    "person": "2000000000",
+    "reservation": "2000000000",
+    "tag": "x",
+    "kind": "plan",
+}
 
 
 @pytest.fixture(scope="module")

@@ -48,6 +48,11 @@ const moments = new Intl.DateTimeFormat(LOCALE, { dateStyle: "medium", timeStyle
 
 export const moment = (iso: string): string => moments.format(new Date(iso));
 
+const days = new Intl.DateTimeFormat(LOCALE, { dateStyle: "medium", timeZone: "UTC" });
+
+// A day without a time, as it is in every zone.
+export const dayText = (day: string): string => days.format(new Date(`${day}T12:00:00Z`));
+
 const UNITS: Record<string, string> = { nm: "N m", rad_s: "rad/s", m_s: "m/s", s: "s", rad: "rad", degc: "°C", v: "V", a: "A", w: "W", hz: "Hz" };
 
 // A channel's name without its unit, in words.

@@ -5,6 +5,7 @@ import { useState } from "preact/hooks";
 import { ask, post } from "../api/client.ts";
 import { to } from "../addresses.ts";
 import { attempt } from "../data.ts";
+import { t } from "../i18n/text.ts";
 import { useLost, type BenchState } from "../live.ts";
 import { useMay, useMe } from "../session.ts";
 import { headlineOf } from "./bench-words.ts";
@@ -12,7 +13,7 @@ import { headlineOf } from "./bench-words.ts";
 export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 }): JSX.Element {
   const { bench, running, message } = state;
   const Title = level === 1 ? "h1" : "h2";
-  const about = [bench.title || bench.name, bench.simulated ? "simulated" : "", bench.machine ? `at ${bench.machine}` : "", bench.lease ? `reserved by ${bench.lease}` : ""];
+  const about = [bench.title || bench.name, bench.simulated ? "simulated" : "", bench.machine ? `at ${bench.machine}` : "", bench.lease || bench.reserved_by ? t("reserved by {who}", { who: bench.lease || (bench.reserved_by ?? "") }) : ""];
   return (
     <section class={`banner ${bench.state}`} aria-label={`State of ${bench.name}`}>
       <p class="kind">{about.filter(Boolean).join(", ")}</p>
@@ -47,7 +48,7 @@ export function Actions({ state }: { state: BenchState }): JSX.Element | null {
         {running && may("operator") ? <button type="button" onClick={order("abort")}>End the run</button> : null}
         {mayReset ? <button type="button" class="main" onClick={() => void attempt(() => post(`/benches/${name}/reset`))}>It is safe: reset the emergency stop</button> : null}
         {bench.away_since && may("engineer") ? <button type="button" onClick={release}>Release from its agent</button> : null}
-        {!bench.lease && may("operator") ? <button type="button" onClick={() => void attempt(() => ask("PUT", `/benches/${name}/lease`, { for_s: 3600 }))}>Reserve for an hour</button> : null}
+        {!bench.lease && may("operator") && (!bench.reserved_by || bench.reserved_by === me.name) ? <button type="button" onClick={() => void attempt(() => ask("PUT", `/benches/${name}/lease`, { for_s: 3600 }))}>Reserve for an hour</button> : null}
         {bench.lease && may("operator") && mayRelease ? <button type="button" onClick={() => void attempt(() => ask("DELETE", `/benches/${name}/lease`))}>End the reservation</button> : null}
       </div>
     </>

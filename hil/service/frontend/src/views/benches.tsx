@@ -4,6 +4,7 @@ import type { JSX } from "preact";
 import type { Bench, Run } from "../api/types.ts";
 import { to } from "../addresses.ts";
 import { useData } from "../data.ts";
+import { t } from "../i18n/text.ts";
 import { Heading, Loaded } from "../ui/parts.tsx";
 import { STATES } from "./bench-words.ts";
 
@@ -28,7 +29,7 @@ function Card({ bench }: { bench: Bench }): JSX.Element {
   return (
     <li class={`card bench ${bench.state}`}>
       <h2><a href={to.bench(bench.name)}>{bench.name}</a></h2>
-      <p class="quiet">{[bench.title, bench.simulated ? "simulated" : "", bench.machine ? `at ${bench.machine}` : "", bench.lease ? `reserved by ${bench.lease}` : ""].filter(Boolean).join(", ")}</p>
+      <p class="quiet">{[bench.title, bench.simulated ? "simulated" : "", bench.machine ? `at ${bench.machine}` : "", bench.lease || bench.reserved_by ? t("reserved by {who}", { who: bench.lease || (bench.reserved_by ?? "") }) : ""].filter(Boolean).join(", ")}</p>
       <p class="state">{bench.stop_confirmed === false ? "Emergency stop asked for, NOT CONFIRMED" : STATES[bench.state]}</p>
       {bench.why ? <p>{bench.why}</p> : null}
       {run ? <p><a href={to.run(run.id)}>{`Run ${run.id}`}</a>{`: ${run.title || run.plan}, by ${run.requested_by}`}</p> : null}

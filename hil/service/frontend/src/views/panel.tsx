@@ -8,6 +8,7 @@ import { useLive, type Live } from "../live.ts";
 import { benchInSight } from "../shell/stop.tsx";
 import { useStore } from "../store.ts";
 import { Banner, LostNotice } from "./bench-banner.tsx";
+import { NewestHandover } from "./team/handovers.tsx";
 
 const SHOWN = ["motor_speed_rad_s", "vehicle_speed_m_s", "motor_torque_nm", "shaft_torque_nm"];
 const EVERY_MS = 250;
@@ -18,6 +19,7 @@ export function Panel({ bench }: { bench: string }): JSX.Element {
   const values = useNewest(live);
   useEffect(() => { benchInSight.value = bench; }, [bench]);
   const decided = criteria && state?.running?.id === criteria.run ? criteria.criteria : [];
+  const next = state?.queue.find((run) => run.state === "queued" && !run.waits_for) ?? state?.queue[0];
   const failed = decided.filter((one) => one.verdict === "fail");
   return (
     <div class="panel">
@@ -40,7 +42,8 @@ export function Panel({ bench }: { bench: string }): JSX.Element {
           {failed.map((one) => <p key={one.id} class="bad">{`${one.title || one.id}: ${figure(one.value, one.unit)} (${limitText(one.upper, one.lower)})`}</p>)}
         </section>
       ) : null}
-      {state?.queue.length ? <p class="big">{`Next: ${state.queue[0]?.title || state.queue[0]?.plan}, by ${state.queue[0]?.requested_by}${state.queue.length > 1 ? `, and ${state.queue.length - 1} more` : ""}`}</p> : <p class="big quiet">Nothing waits.</p>}
+      {state && next ? <p class="big">{`Next: ${next.title || next.plan}, by ${next.requested_by}${state.queue.length > 1 ? `, and ${state.queue.length - 1} more` : ""}`}</p> : <p class="big quiet">Nothing waits.</p>}
+      <NewestHandover bench={bench} />
       <p><a href={to.bench(bench)}>The bench with its plots, its queue and the form that starts a plan</a></p>
     </div>
   );

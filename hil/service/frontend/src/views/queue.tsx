@@ -6,6 +6,7 @@ import type { Run } from "../api/types.ts";
 import { to } from "../addresses.ts";
 import { attempt } from "../data.ts";
 import { useMay, useMe } from "../session.ts";
+import { Admit, WhenExpected } from "./team/expected.tsx";
 
 export function Queue({ runs }: { runs: Run[] }): JSX.Element {
   if (!runs.length) return <p class="quiet">The queue is empty.</p>;
@@ -21,8 +22,10 @@ function Waiting({ run }: { run: Run }): JSX.Element {
         <a href={to.run(run.id)}>{run.id}</a>{`: ${run.title || run.plan}, by ${run.requested_by}`}
         {run.state === "waiting_approval" ? <span class="reason">{`waits for approval: ${run.hazard}`}</span> : null}
         {run.reason ? <span class="reason">{run.reason}</span> : null}
+        <WhenExpected run={run} />
       </span>
       <span class="buttons">
+        <Admit run={run} />
         {run.state === "waiting_approval" && may("engineer") && run.requested_by !== me.name
           ? <button type="button" aria-label={`Approve run ${run.id}`} onClick={() => void attempt(() => post(`/runs/${run.id}/approve`))}>Approve</button> : null}
         {may("engineer") ? <button type="button" aria-label={`Run ${run.id} sooner`} onClick={sooner}>Sooner</button> : null}

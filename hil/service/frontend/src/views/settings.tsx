@@ -9,6 +9,7 @@ import { duration } from "../format.ts";
 import { useMay, useMe } from "../session.ts";
 import { useStore } from "../store.ts";
 import { chooseTheme, theme, THEMES } from "../theme.ts";
+import { People } from "./team/people.tsx";
 import { Facts, Heading, Loaded, Moment, Scroll, Section } from "../ui/parts.tsx";
 
 export function Settings(): JSX.Element {
@@ -19,6 +20,7 @@ export function Settings(): JSX.Element {
       <Section title="Colours" label="colours"><Colours /></Section>
       <Section title="Service" label="service"><ServiceState /></Section>
       <Section title="Agents" label="agents"><Agents /></Section>
+      {may("admin") ? <People /> : null}
       {may("admin") && me.tokens ? <Section title="Tokens" label="tokens"><Tokens /></Section> : null}
       {may("admin") && !me.tokens ? <p class="quiet">This service asks for no tokens. The first one is made on its machine: <code>hil serve --add-token NAME=admin</code></p> : null}
     </>
