@@ -151,7 +151,13 @@ def _along(
     begin = np.array([[start.motor_speed_rad_s, start.wheel_speed_rad_s, start.shaft_torque_nm]])
     sensors = np.stack([sensor_of(model, name) for name in OUTPUTS])[None]
     angles = turned(recorded, dt, ratio, start.wheel_angle_rad)
+    rests = start.motor_torque_nm is not None  # a sample before the first shows that no torque has acted
+    if rests:
+        torque = np.concatenate([[start.motor_torque_nm], torque])
+        angles = np.concatenate([angles[:1], angles])
+        load = None if load is None else np.concatenate([load[:1], load])
     shown = simulate_many(slots.pack(model)[None], torque, dt, begin, sensors, angles=angles, load_nm=load)
+    shown = shown[:, int(rests) :]
     return {name: np.ascontiguousarray(shown[0, :, column]) for column, name in enumerate(OUTPUTS)}
 
 

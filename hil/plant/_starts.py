@@ -39,8 +39,9 @@ def beginning(values: Array) -> tuple[float, float]:
 
 
 def white_noise(values: Array) -> float:
-    """Standard deviation of noise: it scatters as much from sample to sample as around its mean."""
-    return float(np.median(np.abs(np.diff(values))) / (0.6745 * np.sqrt(2.0))) if len(values) > 1 else 0.0
+    """Standard deviation of noise, by second differences: motion is straight from sample to sample."""
+    bent = np.abs(np.diff(values, 2))
+    return float(np.median(bent) / (0.6745 * np.sqrt(6.0))) if len(bent) else 0.0
 
 
 def settled(
