@@ -30,7 +30,8 @@ ALIKE = log(20.0)
 class Candidate:
     """A fitted hypothesis, log likelihood by window (windows,), free numbers, names to choose from.
 
-    `prior` is the logarithm of the density of its base's numbers.
+    `prior` is the logarithm of the density of its base's numbers; `places` that of how many places were
+    looked at for a line that may be anywhere.
     """
 
     point: Point
@@ -38,6 +39,7 @@ class Candidate:
     free: int
     known: int
     prior: float = 0.0
+    places: float = 0.0
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -53,7 +55,7 @@ class Candidate:
         """Log likelihood less what its size costs where the data hold so many independent values."""
         names = len(self.names)
         cost = 0.5 * self.free * log(max(values, 2.0)) + log(comb(self.known, names))
-        return self.log_likelihood + self.prior - cost
+        return self.log_likelihood + self.prior - self.places - cost
 
 
 def remains(had: Array, has: Array, noise: Array, slow: float) -> float:

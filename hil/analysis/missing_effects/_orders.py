@@ -18,6 +18,7 @@ from hil.analysis.missing_effects._spectrum import SEGMENT_S, white
 from hil.plant import linear_system_of
 
 Array = npt.NDArray[np.float64]
+Side = Literal["wheel", "rotor"]
 
 _HIGHEST = 60.0  # order
 FINE = 0.02
@@ -28,7 +29,7 @@ _COUNT = 4
 _SOURCES = {"wheel": "extra_shaft_torque_nm", "rotor": "rotor_loss_nm"}
 
 
-def orders_of(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) -> list[float]:
+def orders_of(problem: Problem, point: Point, side: Side) -> list[float]:
     """The most promising orders, by weights of the misfit and by those of noise; none where nothing turns.
 
     A ripple that is most of the misfit makes its own octaves weigh little.
@@ -38,7 +39,7 @@ def orders_of(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) -
     return list(dict.fromkeys(found[0] + found[1]))
 
 
-def _orders_by(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) -> list[float]:
+def _orders_by(problem: Problem, point: Point, side: Side) -> list[float]:
     system = linear_system_of(point.hypothesis.packed()[0])
     orders = np.arange(FINE, _HIGHEST, FINE)
     slopes, energy, whole = np.zeros(len(orders), complex), np.zeros(len(orders)), 0.0
@@ -67,12 +68,18 @@ def _orders_by(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) 
         energy += _energy(speed, orders, frequency, gain)
     promise = np.abs(slopes) ** 2 / np.maximum(energy, 1e-250)
     promise[promise > whole] = 0.0  # more than there is: an order that the plant does not show
-    turns = max(float(np.ptp(angle)) for angle in _angles(problem, side)) / (2 * np.pi)
-    return peaks(orders, np.where(orders * turns >= PERIODS, promise, 0.0), _COUNT)
+    return peaks(orders, np.where(orders * turns(problem, side) >= PERIODS, promise, 0.0), _COUNT)
 
 
-def _angles(problem: Problem, side: str) -> list[Array]:
-    return [both[:, 0 if side == "wheel" else 1] for both in problem.angles]
+def count_of_orders(problem: Problem, side: Side) -> float:
+    """How many orders the longest recording tells apart: among so many a ripple is looked for."""
+    return _HIGHEST * turns(problem, side)
+
+
+def turns(problem: Problem, side: Side) -> float:
+    """Of wheel or rotor in the longest recording."""
+    column = 0 if side == "wheel" else 1
+    return max(float(np.ptp(both[:, column])) for both in problem.angles) / (2 * np.pi)
 
 
 def over_angle(values: Array, angle: Array, count: int) -> npt.NDArray[np.complex128]:

@@ -20,6 +20,7 @@ from hil.analysis.missing_effects._fit import (
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._linear import structures
 from hil.analysis.missing_effects._odds import Candidate, remains
+from hil.analysis.missing_effects._orders import count_of_orders
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import (
     best_by_name,
@@ -107,7 +108,9 @@ class Search:
         coordinates = self.problem.coordinates(hypothesis)
         prior = -0.5 * float(np.sum(self.problem.prior(coordinates, np.zeros(len(coordinates))) ** 2))
         windows = point.powers(self.problem).log_likelihood(self.problem.noise)
-        return Candidate(point, windows, len(coordinates), known, prior)
+        sides = [side for use in hypothesis.terms if (side := EFFECTS[use.id].law.follows)]
+        places = sum(math.log(max(count_of_orders(self.problem, side), 1.0)) for side in sides)
+        return Candidate(point, windows, len(coordinates), known, prior, places)
 
 
 def search(problem: Problem, show: Callable[[str], None]) -> Search:

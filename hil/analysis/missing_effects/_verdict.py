@@ -22,6 +22,7 @@ from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised
 from hil.analysis.missing_effects._hypothesis import Hypothesis, tolerance_of
 from hil.analysis.missing_effects._noise import rounding_step
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains, weights_of
+from hil.analysis.missing_effects._orders import PERIODS, turns
 from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Replay, Verdict
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._search import HALF, Search
@@ -94,14 +95,30 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
 def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, list[float]]:
     """Without effects that take off less than half of what stays without them; shares of the others."""
     while best.names:
+        at = linearised(of.done.problem, best.point)
         shares = [
-            1.0 - _remains(of, _without(of.done, best, index), best) for index in range(len(best.names))
+            1.0 - _remains(of, _without(of.done, best, index), best) if _is_line(of.done, at, index) else 0.0
+            for index in range(len(best.names))
         ]
         least = int(np.argmin(shares))
         if shares[least] >= HALF:
             return best, shares
         best = _without(of.done, best, least)
     return best, []
+
+
+def _is_line(done: Search, at: Linearised, index: int) -> bool:
+    """Whether an effect follows no angle, or recordings hold periods of its order and tell it to half a one.
+
+    A ripple of less than that takes up whatever is slow.
+    """
+    use = at.point.hypothesis.terms[index]
+    side = EFFECTS[use.id].law.follows
+    if side is None:
+        return True
+    whole = turns(done.problem, side)
+    sure = at.standard_error(index, "order") * whole < HALF
+    return sure and float(use.values["order"]) * whole >= PERIODS
 
 
 def _swapped(done: Search, best: Candidate) -> None:

@@ -106,3 +106,12 @@ def test_one_period_is_too_short() -> None:
     cut = Experiment("cut", STEP, short.input[:6000], short.outputs[:, :6000], OUTPUTS[:1])
     with pytest.raises(UnfitDataError, match="too short"):
         best_linear_approximation([cut], round(PERIOD_S / STEP), 0.25, 25)
+
+
+def test_a_period_is_found_of_an_input_as_it_was_measured() -> None:
+    """Single samples of a measured current are off by more than any two of the one asked for."""
+    torque = stimuli.multisine(list(range(11, 60, 2)), 1.0, 14, 1, STEP, rms=10.0, fade_s=0.02)
+    rng = np.random.default_rng(2)
+    measured = torque + rng.normal(0.0, 0.1, len(torque))
+    measured[rng.integers(0, len(torque), 20)] += 2.0
+    assert period_samples(measured) == round(1.0 / STEP)

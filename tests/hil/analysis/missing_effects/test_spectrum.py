@@ -81,3 +81,23 @@ def test_what_is_sent_back_is_the_slope_of_half_the_squares(blocks: int) -> None
     weighed = [spectrum.weighed(one[None], channels, RATE_HZ, 0.0)[0] for one in (errors, change)]
     back = spectrum.sent_back(errors, channels, RATE_HZ, 0.0)
     assert np.sum(back * change) == pytest.approx(weighed[0] @ weighed[1])
+
+
+def test_the_beginning_counts_as_much_as_the_middle() -> None:
+    """Windows that rise from zero leave the first half of one to `begun`; together each block counts once."""
+    errors = np.random.default_rng(3).normal(0.0, 1.0, (1, 20_000, 2))
+    errors[:, 500:] = 0.0  # of the first window, half
+    channels = np.array([True, False, True])
+    spectrum = white(np.full(3, 0.5), RATE_HZ)
+    both = (spectrum.weighed(errors, channels, RATE_HZ, 0.0), spectrum.begun(errors, channels, RATE_HZ))
+    whole = sum(float(np.sum(one**2)) for one in both)
+    assert whole == pytest.approx(np.sum(errors**2) / 0.25, rel=0.1)
+
+
+def test_what_lies_below_the_excited_octaves_does_not_count() -> None:
+    rng = np.random.default_rng(4)
+    noise = rng.normal(0.0, 1.0, (5000, 3))
+    drift = noise + 100.0 * np.sin(2.0 * np.pi * 0.5 * np.arange(5000)[:, None] / RATE_HZ)
+    left = [powers_of([one], RATE_HZ, np.ones(3), [8.0]).mean_square() for one in (noise, drift)]
+    assert left[0] == pytest.approx(np.ones(3), rel=0.1)
+    assert left[1] == pytest.approx(left[0], rel=1e-3)
