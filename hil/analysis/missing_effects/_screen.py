@@ -28,8 +28,8 @@ from hil.plant import chain_numbers
 
 Array = npt.NDArray[np.float64]
 
-#: Effects that are a change of a number which a base may have, and which is free there.
-_NUMBERS = {"dead_time": "torque_delay", "viscous_drag": "viscous_drag"}
+NUMBERS = {"dead_time": "torque_delay", "viscous_drag": "viscous_drag"}
+"""Effects that are a change of a number which a base may have, and which is free there."""
 _AT_ONCE = 24  # simulations
 _SWEEPS = 20  # of coordinate descent over at most two bounded factors
 
@@ -132,7 +132,7 @@ def may_join(effect: Effect, hypothesis: Hypothesis) -> bool:
     """Whether an effect can be added to a hypothesis: its kind fits, and a place for it is free."""
     if effect.id in ("parameter_mismatch", "sensor_quantization"):
         return False  # numbers are free anyway; rounding is seen in the readings themselves
-    if hypothesis.kind not in effect.needs or _NUMBERS.get(effect.id) in hypothesis.base.parameters:
+    if hypothesis.kind not in effect.needs or NUMBERS.get(effect.id) in hypothesis.base.parameters:
         return False
     taken = {use.id for use in (*hypothesis.base.effects, *hypothesis.terms)}
     return bool(effect.text_parameters) or effect.id not in taken

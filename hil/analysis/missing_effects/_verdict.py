@@ -25,6 +25,7 @@ from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains, weight
 from hil.analysis.missing_effects._orders import PERIODS, turns
 from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Replay, Verdict
 from hil.analysis.missing_effects._problem import Problem
+from hil.analysis.missing_effects._screen import NUMBERS
 from hil.analysis.missing_effects._search import HALF, Search
 from hil.analysis.missing_effects._spectrum import RIGHT_TO
 from hil.core.channels import OUTPUTS
@@ -72,8 +73,7 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
         (effects if named.confidence >= HALF else doubtful).append(named)
     numbers = _numbers(at, of.asked)
     far = _is_far(numbers, done)
-    # a number is wrong where nothing is missing (what is missing bends numbers as well) and noise is left
-    if not far and not best.names and done.problem.is_noise(best.point.errors):
+    if not far and done.problem.is_noise(best.point.errors):  # what has no name bends numbers as well
         effects += _mismatches(done, numbers, best)
     if done.problem.is_noise(best.point.errors):
         effects += _roundings(done, float(weights[candidates.index(best)]))
@@ -289,12 +289,15 @@ def _mismatches(
 ) -> list[Named]:
     """Numbers that are wrong by more than their tolerance and doubt, each with the probability of that.
 
+    Beside an effect, which bends numbers as well, those that are effects by themselves: a dead time, a drag.
     One that moves no channel by more than what no model is right to says nothing.
     """
     from scipy.special import ndtr
 
     found = []
     for name, (_, value, error) in numbers.items():
+        if best.names and name not in NUMBERS.values():
+            continue
         moved, doubt = _off(name, numbers, done)
         sure = float(ndtr((moved - 1.0) / max(doubt, 1e-12)))
         if sure >= HALF and moved - 1.0 > doubt and _shows(done.problem, best.point, name):
