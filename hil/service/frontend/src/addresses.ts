@@ -1,5 +1,7 @@
 // Every view has an address: what it says, and how it is written.
 
+import { t } from "./i18n/text.ts";
+
 export type Place =
   | { view: "benches" | "runs" | "compare" | "trends" | "plans" | "models" | "controllers" | "design" | "identifications" | "diagnoses" | "campaigns" | "audit" | "settings" }
   | { view: "bench" | "panel"; bench: string }
@@ -68,22 +70,22 @@ export const to = {
 };
 
 const TITLES: Record<(typeof LISTS)[number], string> = {
-  benches: "Benches", runs: "Runs", compare: "Compare runs", trends: "Trends", plans: "Plans", models: "Models", controllers: "Controllers",
-  design: "Design a controller", identifications: "Identifications", diagnoses: "Diagnoses", campaigns: "Campaigns", audit: "Audit log", settings: "Settings",
+  benches: t("Benches"), runs: t("Runs"), compare: t("Compare runs"), trends: t("Trends"), plans: t("Plans"), models: t("Models"), controllers: t("Controllers"),
+  design: t("Design a controller"), identifications: t("Identifications"), diagnoses: t("Diagnoses"), campaigns: t("Campaigns"), audit: t("Audit log"), settings: t("Settings"),
 };
 
 export function titleOf(place: Place): string {
   switch (place.view) {
-    case "bench": return `Bench ${place.bench}`;
-    case "panel": return `Operator panel of ${place.bench}`;
-    case "run": return `Run ${place.run}`;
-    case "plan": return `Plan ${place.name}`;
-    case "model": return `Model ${place.name}`;
-    case "controller": return `Controller ${place.name}`;
-    case "identification": return `Identification ${place.id}`;
-    case "diagnosis": return `Diagnosis ${place.id}`;
-    case "campaign": return `Campaign ${place.id}`;
-    case "missing": return "No such page";
+    case "bench": return t("Bench {bench}", { bench: place.bench });
+    case "panel": return t("Operator panel of {bench}", { bench: place.bench });
+    case "run": return t("Run {run}", { run: place.run });
+    case "plan": return t("Plan {name}", { name: place.name });
+    case "model": return t("Model {name}", { name: place.name });
+    case "controller": return t("Controller {name}", { name: place.name });
+    case "identification": return t("Identification {number}", { number: place.id });
+    case "diagnosis": return t("Diagnosis {number}", { number: place.id });
+    case "campaign": return t("Campaign {number}", { number: place.id });
+    case "missing": return t("No such page");
     default: return TITLES[place.view];
   }
 }

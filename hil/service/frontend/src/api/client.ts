@@ -1,5 +1,6 @@
 // Requests to the service, and errors in its words.
 
+import { t } from "../i18n/text.ts";
 import type { Health, Problem } from "./types.ts";
 
 export const API = "/api/v1";
@@ -30,7 +31,7 @@ async function fetched(method: string, path: string, body: Body, signal?: AbortS
     answer = await fetch(`${API}${path}`, options);
   } catch (error) {
     if (signal?.aborted) throw error;
-    throw new Refused(0, { what: "the service does not answer", where: "", fix: "" });
+    throw new Refused(0, { what: t("the service does not answer"), where: "", fix: "" });
   }
   const text = await answer.text();
   if (answer.ok) return text;
@@ -41,7 +42,7 @@ function problemOf(status: number, text: string): Problem {
   try {
     return JSON.parse(text) as Problem;
   } catch { // a proxy's answer
-    return { what: `status ${status}`, where: "", fix: "" };
+    return { what: t("status {status}", { status }), where: "", fix: "" };
   }
 }
 
@@ -79,7 +80,7 @@ export async function stopNow(bench: string): Promise<void> {
 
 async function byStopPost(path: string): Promise<void> {
   const answer = await fetch(`${stopUrl}${API}${path}`, { method: "POST", credentials: "include" });
-  if (!answer.ok) throw new Refused(answer.status, { what: `status ${answer.status}`, where: "", fix: "" });
+  if (!answer.ok) throw new Refused(answer.status, { what: t("status {status}", { status: answer.status }), where: "", fix: "" });
 }
 
 async function insist(way: () => Promise<unknown>): Promise<void> {

@@ -4,6 +4,7 @@ import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { ask } from "../api/client.ts";
 import { attempt } from "../data.ts";
+import { t } from "../i18n/text.ts";
 import { lookWho, session } from "../session.ts";
 
 export function SignIn(): JSX.Element {
@@ -16,10 +17,10 @@ export function SignIn(): JSX.Element {
   };
   return (
     <form class="card narrow" onSubmit={(event) => void submit(event)}>
-      <h1>Sign in</h1>
-      <label class="field">Token <input ref={secret} type="password" autocomplete="current-password" required maxLength={200} /></label>
-      <button type="submit" class="main">Sign in</button>
-      <p class="quiet">An administrator makes tokens. The emergency stop works without one.</p>
+      <h1>{t("Sign in")}</h1>
+      <label class="field">{t("Token")} <input ref={secret} type="password" autocomplete="current-password" required maxLength={200} /></label>
+      <button type="submit" class="main">{t("Sign in")}</button>
+      <p class="quiet">{t("An administrator makes tokens. The emergency stop works without one.")}</p>
     </form>
   );
 }

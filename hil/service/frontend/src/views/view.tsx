@@ -2,6 +2,7 @@
 
 import type { JSX } from "preact";
 import { to, type Place } from "../addresses.ts";
+import { t } from "../i18n/text.ts";
 import { Heading } from "../ui/parts.tsx";
 import { Audit } from "./audit.tsx";
 import { BenchView } from "./bench.tsx";
@@ -51,8 +52,8 @@ export function View({ place }: { place: Place }): JSX.Element {
 function Missing({ path }: { path: string }): JSX.Element {
   return (
     <>
-      <Heading>No such page</Heading>
-      <p>{`There is nothing at ${path}. `}<a href={to.list("benches")}>All benches</a></p>
+      <Heading>{t("No such page")}</Heading>
+      <p>{t("There is nothing at {path}.", { path })} <a href={to.list("benches")}>{t("All benches")}</a></p>
     </>
   );
 }
