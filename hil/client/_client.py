@@ -254,6 +254,11 @@ class Client(Requests):
         """Give a controller file, so that plans can load it."""
         return self._one(ControllerData, "PUT", f"/controllers/{part(name)}", text)
 
+    def give_picture(self, name: str, content: bytes) -> None:
+        """Give a picture, so that prompts of plans can show it."""
+        with self._opened("PUT", f"/pictures/{part(name)}", content, WITHIN_S):
+            pass
+
     def copy_plan(self, plan: str, wanted: PlanCopyWanted) -> PlanData:
         """Give a copy of a plan that loads other controllers."""
         return self._one(PlanData, "POST", f"/plans/{part(plan)}/copies", wanted)
