@@ -5,6 +5,7 @@ import { t } from "./i18n/text.ts";
 export type Place =
   | { view: "benches" | "runs" | "compare" | "trends" | "plans" | "models" | "controllers" | "design" | "identifications" | "diagnoses" | "campaigns" | "audit" | "settings" }
   | { view: "bench" | "panel"; bench: string }
+  | { view: "wall"; bench: string | null } // null: all benches
   | { view: "run"; run: number }
   | { view: "plan" | "model" | "controller"; name: string }
   | { view: "identification" | "diagnosis" | "campaign"; id: number }
@@ -19,6 +20,7 @@ export function placeOf(path: string): Place {
   const [head = "", name, more, ...rest] = partsOf(path);
   if (rest.length) return missing;
   if (head === "") return { view: "benches" };
+  if (head === "wall") return more === undefined ? { view: "wall", bench: name ?? null } : missing;
   const list = LISTS.find((one) => one === head);
   if (list === undefined) return missing;
   if (name === undefined) return { view: list };
@@ -59,6 +61,7 @@ export const to = {
   list: (view: (typeof LISTS)[number]): string => `/${view}`,
   bench: (bench: string): string => `/benches/${name(bench)}`,
   panel: (bench: string): string => `/benches/${name(bench)}/panel`,
+  wall: (bench?: string): string => (bench === undefined ? "/wall" : `/wall/${name(bench)}`),
   run: (run: number): string => `/runs/${run}`,
   plan: (plan: string): string => `/plans/${name(plan)}`,
   model: (model: string): string => `/models/${name(model)}`,
@@ -78,6 +81,7 @@ export function titleOf(place: Place): string {
   switch (place.view) {
     case "bench": return t("Bench {bench}", { bench: place.bench });
     case "panel": return t("Operator panel of {bench}", { bench: place.bench });
+    case "wall": return place.bench === null ? t("All benches") : t("Bench {bench}", { bench: place.bench });
     case "run": return t("Run {run}", { run: place.run });
     case "plan": return t("Plan {name}", { name: place.name });
     case "model": return t("Model {name}", { name: place.name });

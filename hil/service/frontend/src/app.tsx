@@ -14,6 +14,7 @@ import { Palette, paletteOpen } from "./shell/palette.tsx";
 import { SignIn, signOut } from "./shell/sign-in.tsx";
 import { benchInSight, StopButton } from "./shell/stop.tsx";
 import { useStore } from "./store.ts";
+import { kindInWords } from "./ui/kinds.ts";
 import { View } from "./views/view.tsx";
 
 const STOP_POST_MS = 5000;
@@ -29,9 +30,10 @@ export function App(): JSX.Element {
     return () => clearInterval(timer);
   }, []);
   useEffect(() => {
-    if (!("bench" in place) && place.view !== "run") benchInSight.value = "";
+    if ((!("bench" in place) || place.view === "wall") && place.view !== "run") benchInSight.value = "";
     refusal.value = null;
   }, [place]);
+  if (place.view === "wall" && who.state === "in") return <main id="main"><View place={place} /></main>;
   return (
     <>
       <a class="skip" href="#main" onClick={(event) => { event.preventDefault(); document.getElementById("main")?.focus(); }}>{t("Skip to the content")}</a>
@@ -39,7 +41,7 @@ export function App(): JSX.Element {
         <div class="bar">
           <a class="home" href={to.list("benches")}>{t("Bench service")}</a>
           {who.state === "in" ? <button type="button" class="find" onClick={() => { paletteOpen.value = true; }}>{t("Find")} <kbd>Ctrl K</kbd></button> : null}
-          {who.state === "in" && who.me.tokens ? <span class="who">{`${who.me.name}, ${t(who.me.role)}`} <button type="button" class="plain" onClick={() => void signOut()}>{t("Sign out")}</button></span> : null}
+          {who.state === "in" && who.me.tokens ? <span class="who">{`${who.me.name}, ${kindInWords(who.me.role)}`} <button type="button" class="plain" onClick={() => void signOut()}>{t("Sign out")}</button></span> : null}
           <StopButton />
         </div>
         {who.state === "in" ? <Menu place={place} /> : null}

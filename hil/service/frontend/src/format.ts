@@ -54,6 +54,10 @@ export function duration(seconds: number): string {
 
 const moments = new Intl.DateTimeFormat(LOCALE, { dateStyle: "medium", timeStyle: "short" });
 
+const times = new Intl.DateTimeFormat(LOCALE, { timeStyle: "medium" });
+
+export const clockTime = (ms: number): string => times.format(new Date(ms));
+
 export const moment = (iso: string): string => moments.format(new Date(iso));
 
 const UNITS: Record<string, string> = { nm: "N m", rad_s: "rad/s", m_s: "m/s", s: "s", rad: "rad", degc: "°C", v: "V", a: "A", w: "W", hz: "Hz" };

@@ -35,3 +35,10 @@ export function beginTheme(): void {
 }
 
 export const colour = (name: string): string => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+
+// A view that is always light or always dark; what is returned gives the colours of this browser back.
+export function showAs(shown: Exclude<Theme, "system">): () => void {
+  document.documentElement.dataset["theme"] = shown;
+  coloured.value += 1;
+  return show;
+}

@@ -1,6 +1,7 @@
 // Requests to the service, and errors in its words.
 
 import { t } from "../i18n/text.ts";
+import { noteDate } from "./clock.ts";
 import type { Health, Problem } from "./types.ts";
 
 export const API = "/api/v1";
@@ -18,13 +19,13 @@ export class Refused extends Error {
 
 type Body = object | string | undefined;
 
-// A text is sent as a file, anything else as JSON.
+// A text or a file is sent as it is, anything else as JSON.
 async function fetched(method: string, path: string, body: Body, signal?: AbortSignal): Promise<string> {
   const options: RequestInit = { method, headers: {}, signal: signal ?? null };
   if (body !== undefined) {
-    const isFile = typeof body === "string";
-    options.headers = { "content-type": isFile ? "text/plain" : "application/json" };
-    options.body = isFile ? body : JSON.stringify(body);
+    const isFile = body instanceof Blob, asItIs = typeof body === "string" || isFile;
+    options.headers = { "content-type": isFile ? body.type : asItIs ? "text/plain" : "application/json" };
+    options.body = asItIs ? body : JSON.stringify(body);
   }
   let answer: Response;
   try {
@@ -33,6 +34,7 @@ async function fetched(method: string, path: string, body: Body, signal?: AbortS
     if (signal?.aborted) throw error;
     throw new Refused(0, { what: t("the service does not answer"), where: "", fix: "" });
   }
+  noteDate(answer.headers.get("date"));
   const text = await answer.text();
   if (answer.ok) return text;
   throw new Refused(answer.status, problemOf(answer.status, text));

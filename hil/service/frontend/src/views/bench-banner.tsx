@@ -10,7 +10,7 @@ import { t, tx } from "../i18n/text.ts";
 import { useLost, type BenchState } from "../live.ts";
 import { useMay, useMe } from "../session.ts";
 import { linkTo } from "../ui/parts.tsx";
-import { aboutBench, headlineOf } from "./bench-words.ts";
+import { aboutBench, headlineOf, isHeld, titleOf } from "./bench-words.ts";
 
 export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 }): JSX.Element {
   const { bench, running, message } = state;
@@ -18,7 +18,7 @@ export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 
   return (
     <section class={`banner ${bench.state}`} aria-label={t("State of {bench}", { bench: bench.name })}>
       <p class="kind">{aboutBench(bench, bench.title || bench.name)}</p>
-      <Title class="headline" aria-live="polite">{headlineOf(bench, running ? running.title || running.plan : null)}</Title>
+      <Title class="headline" aria-live="polite">{headlineOf(bench, running ? titleOf(running) : null)}</Title>
       {running ? <p>{tx("<a>Run {run}</a>, by {person}: {doing}", { a: linkTo(to.run(running.id)), run: running.id, person: running.requested_by, doing: <English>{running.doing}</English> })}</p> : null}
       {bench.why && !(running && bench.state === "running") ? <p><English>{bench.why}</English></p> : null}
       {running ? <progress max={1} value={running.share ?? 0} aria-label={t("Progress of the run")} /> : null}
@@ -28,12 +28,12 @@ export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 
   );
 }
 
-export function Actions({ state }: { state: BenchState }): JSX.Element | null {
+export function Actions({ state, answers = true }: { state: BenchState; answers?: boolean }): JSX.Element | null {
   const { bench, running, message } = state;
   const may = useMay(), me = useMe();
   const name = encodeURIComponent(bench.name);
   const reached = !bench.away_since;
-  const held = running?.doing?.startsWith("held") ?? false;
+  const held = isHeld(running);
   const order = (what: string) => () => void attempt(() => post(`/runs/${running?.id}/${what}`));
   const release = () => {
     if (confirm(t("Is {bench} no longer driven by its agent? It can then be driven by another agent. A run of this agent is marked as interrupted.", { bench: bench.name }))) void attempt(() => ask("DELETE", `/benches/${name}/agent`));
@@ -42,7 +42,7 @@ export function Actions({ state }: { state: BenchState }): JSX.Element | null {
   const mayRelease = bench.lease === me.name || may("engineer");
   return (
     <>
-      {running && message && may("operator") && reached ? <AnswerForm run={running.id} /> : null}
+      {answers && running && message && may("operator") && reached ? <AnswerForm run={running.id} /> : null}
       <div class="row">
         {running && may("operator") && reached && !held ? <button type="button" onClick={order("pause")}>{t("Pause")}</button> : null}
         {running && may("operator") && reached && held ? <button type="button" class="main" onClick={order("resume")}>{t("Resume")}</button> : null}

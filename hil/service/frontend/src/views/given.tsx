@@ -73,7 +73,7 @@ interface GivenOptions {
 }
 
 function Given({ name, kind, path, list }: GivenOptions): JSX.Element {
-  const may = useMay(), noun = t(kind);
+  const may = useMay(), noun = kindInWords(kind);
   const found = useData<{ name: string; built_in: boolean }[]>(path).data?.find((one) => one.name === name);
   const remove = async () => {
     if (!confirm(t("Remove the {kind} {name}?", { kind: noun, name }))) return;

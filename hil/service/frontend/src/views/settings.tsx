@@ -12,6 +12,7 @@ import { t, tx } from "../i18n/text.ts";
 import { useMay, useMe } from "../session.ts";
 import { useStore } from "../store.ts";
 import { chooseTheme, theme, THEME_NAMES, THEMES } from "../theme.ts";
+import { kindInWords } from "../ui/kinds.ts";
 import { Facts, Heading, Loaded, Moment, Scroll, Section } from "../ui/parts.tsx";
 
 export function Settings(): JSX.Element {
@@ -64,7 +65,7 @@ function ServiceState(): JSX.Element {
               [t("stop post"), found.stop_url ? <code>{found.stop_url}</code> : <span class="bad">{t("not available")}</span>],
             ]}
           </Facts>
-          {apart.map((one) => <p key={one.file} class="bad">{tx("{name} is kept apart: {why}", { name: `${t(one.kind)} ${one.name}`, why: <English>{`${one.why}. ${one.fix}`}</English> })}</p>)}
+          {apart.map((one) => <p key={one.file} class="bad">{tx("{name} is kept apart: {why}", { name: `${kindInWords(one.kind)} ${one.name}`, why: <English>{`${one.why}. ${one.fix}`}</English> })}</p>)}
         </>
       )}
     </Loaded>
@@ -100,7 +101,7 @@ function Tokens(): JSX.Element {
     <>
       <form class="row" onSubmit={(event) => void make(event)}>
         <label class="field">{t("Name")}<input required maxLength={100} value={name} onInput={(event) => setName(event.currentTarget.value)} /></label>
-        <label class="field">{t("Role")}<select value={role} onChange={(event) => setRole(event.currentTarget.value)}>{[...ROLES, "agent"].map((one) => <option key={one} value={one}>{t(one)}</option>)}</select></label>
+        <label class="field">{t("Role")}<select value={role} onChange={(event) => setRole(event.currentTarget.value)}>{[...ROLES, "agent"].map((one) => <option key={one} value={one}>{kindInWords(one)}</option>)}</select></label>
         <label class="field">{t("Days")}<input type="number" min={1} max={3650} required value={days} onInput={(event) => setDays(event.currentTarget.value)} /></label>
         <button type="submit" class="main">{t("Make a token")}</button>
       </form>
@@ -109,7 +110,7 @@ function Tokens(): JSX.Element {
         {(all) => (
           <Scroll label={t("Tokens")}><table>
             <thead><tr><th scope="col">{t("name")}</th><th scope="col">{t("role")}</th><th scope="col">{t("made")}</th><th scope="col">{t("valid until")}</th><th scope="col"><span class="hidden">{t("actions")}</span></th></tr></thead>
-            <tbody>{all.map((one) => <tr key={one.id}><th scope="row">{one.name}</th><td>{t(one.role)}</td><td><Moment at={one.made_at} /></td><td>{one.revoked_at ? tx("revoked {moment}", { moment: <Moment at={one.revoked_at} /> }) : <Moment at={one.expires_at} />}</td><td>{one.revoked_at ? null : <button type="button" aria-label={t("Revoke the token of {name}", { name: one.name })} onClick={() => void revoke(one)}>{t("Revoke")}</button>}</td></tr>)}</tbody>
+            <tbody>{all.map((one) => <tr key={one.id}><th scope="row">{one.name}</th><td>{kindInWords(one.role)}</td><td><Moment at={one.made_at} /></td><td>{one.revoked_at ? tx("revoked {moment}", { moment: <Moment at={one.revoked_at} /> }) : <Moment at={one.expires_at} />}</td><td>{one.revoked_at ? null : <button type="button" aria-label={t("Revoke the token of {name}", { name: one.name })} onClick={() => void revoke(one)}>{t("Revoke")}</button>}</td></tr>)}</tbody>
           </table></Scroll>
         )}
       </Loaded>

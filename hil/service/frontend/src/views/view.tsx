@@ -18,6 +18,7 @@ import { RunView } from "./runs/run.tsx";
 import { Runs } from "./runs/runs.tsx";
 import { Settings } from "./settings.tsx";
 import { Diagnoses, DiagnosisView } from "./studies/diagnoses.tsx";
+import { Wall } from "./wall.tsx";
 import { TrendsView } from "./trends/trends-view.tsx";
 import { Identifications, IdentificationView } from "./studies/identifications.tsx";
 
@@ -26,6 +27,7 @@ export function View({ place }: { place: Place }): JSX.Element {
     case "benches": return <Benches />;
     case "bench": return <BenchView key={place.bench} bench={place.bench} />;
     case "panel": return <Panel key={place.bench} bench={place.bench} />;
+    case "wall": return <Wall key={place.bench} bench={place.bench} />;
     case "runs": return <Runs />;
     case "run": return <RunView key={place.run} run={place.run} />;
     case "compare": return <Compare />;

@@ -16,6 +16,7 @@ import { renamed, START } from "./plan-text.ts";
 import { valuesFrom } from "./start-values.ts";
 import { StartPlan } from "./start-plan.tsx";
 import { GiveFile } from "../give-file.tsx";
+import { Pictures } from "./pictures.tsx";
 
 export function Plans(): JSX.Element {
   const plans = useData<Plan[]>("/plans"), [query] = useQuery();
@@ -42,6 +43,7 @@ export function Plans(): JSX.Element {
       </Loaded>
       {may("engineer") ? <p><a href={`${to.list("plans")}?write=new`}>{t("Write a plan")}</a></p> : null}
       {may("engineer") ? <Section title={t("Give a plan")} label="give"><GiveFile kind="plan" path="/plans" ending=".yaml" onGiven={(name) => go(to.plan(name))} /></Section> : null}
+      {may("engineer") ? <Section title={t("Pictures for questions")} label="pictures"><Pictures /></Section> : null}
     </>
   );
 }

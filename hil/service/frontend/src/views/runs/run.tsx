@@ -28,7 +28,7 @@ const WAITING_MS = 2000;
 
 export function RunView({ run: id }: { run: number }): JSX.Element {
   const run = useData<Run>(`/runs/${id}`, WAITING_MS);
-  return <Loaded of={run} what={t("run {id}", { id })}>{(found) => <Found key={found.state} run={found} />}</Loaded>;
+  return <Loaded of={run} what={t("run {run}", { run: id })}>{(found) => <Found key={found.state} run={found} />}</Loaded>;
 }
 
 function Found({ run }: { run: Run }): JSX.Element {

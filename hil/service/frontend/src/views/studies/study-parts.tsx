@@ -9,6 +9,7 @@ import { English } from "../../i18n/english.tsx";
 import { t, tn } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { useMay } from "../../session.ts";
+import { kindInWords } from "../../ui/kinds.ts";
 import { Badge, Facts, FileLink, Heading, Loaded, Moment, Scroll, Section } from "../../ui/parts.tsx";
 
 const AGAIN_MS = 2000;
@@ -56,7 +57,7 @@ export function ChooseRuns({ legend, chosen, onChange, without = [] }: { legend:
 
 export function StudyPage({ id, kind, children }: { id: number; kind: Kind; children: (study: Study) => ComponentChildren }): JSX.Element {
   const study = useData<Study>(`/studies/${id}`, AGAIN_MS);
-  return <Loaded of={study} what={`${t(kind)} ${id}`}>{(found) => <Found study={found}>{children(found)}</Found>}</Loaded>;
+  return <Loaded of={study} what={`${kindInWords(kind)} ${id}`}>{(found) => <Found study={found}>{children(found)}</Found>}</Loaded>;
 }
 
 function Found({ study, children }: { study: Study; children: ComponentChildren }): JSX.Element {
@@ -83,7 +84,7 @@ function Found({ study, children }: { study: Study; children: ComponentChildren 
 function Files({ study, names }: { study: Study; names: string[] }): JSX.Element {
   const figures = names.filter((name) => /\.(png|svg)$/.test(name)), first = (name: string) => (name.startsWith("report") ? 0 : 1);
   const others = names.filter((name) => !figures.includes(name)).sort((one, other) => first(one) - first(other));
-  const link = (name: string) => <FileLink key={name} name={name} href={fileOf(study, name)}>{name === "report.html" ? t("report of the {kind}", { kind: t(study.kind) }) : name}</FileLink>;
+  const link = (name: string) => <FileLink key={name} name={name} href={fileOf(study, name)}>{name === "report.html" ? t("report of the {kind}", { kind: kindInWords(study.kind) }) : name}</FileLink>;
   return (
     <Section title={t("Files")} label="files">
       <p class="links">{others.map(link)}</p>
