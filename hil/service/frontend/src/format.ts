@@ -52,6 +52,9 @@ export function duration(seconds: number): string {
   return t("{hours} h {minutes} min", { hours: Math.floor(minutes / 60), minutes: minutes % 60 });
 }
 
+// As a guess is given: to the second.
+export const roughly = (seconds: number): string => (seconds < 60 ? joined(whole(seconds), "s") : duration(seconds));
+
 const moments = new Intl.DateTimeFormat(LOCALE, { dateStyle: "medium", timeStyle: "short" });
 
 const times = new Intl.DateTimeFormat(LOCALE, { timeStyle: "medium" });

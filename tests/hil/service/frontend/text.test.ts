@@ -17,5 +17,6 @@ test("a number decides the form of the word, in English and by the categories of
 
 test("elements stand in a sentence as it is, or are made around its words", () => {
   assert.deepEqual(pieces("In the <a>table</a> see {code}.", { a: (words) => ["link", words], code: 17 }), ["In the ", ["link", "table"], " see ", 17, "."]);
+  assert.deepEqual(pieces("<a>Run {run}</a>", { a: (words) => words, run: 7 }), [["Run ", 7]]);
   assert.deepEqual(pieces("no {value} of this", {}), ["no ", "{value}", " of this"]);
 });

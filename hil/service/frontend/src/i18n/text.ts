@@ -4,7 +4,7 @@ import type { ComponentChildren } from "preact";
 import { CATALOGUE, LANGUAGE, LOCALE, type Catalogue } from "./language.ts";
 
 export type Values = Record<string, string | number>;
-export type Shown = Record<string, ComponentChildren | ((text: string) => ComponentChildren)>;
+export type Shown = Record<string, ComponentChildren | ((words: ComponentChildren) => ComponentChildren)>;
 
 const filled = (text: string, values: Values): string =>
   text.replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
@@ -36,6 +36,6 @@ export function pieces(text: string, shown: Shown): ComponentChildren[] {
   return text.split(/(\{\w+\}|<\w+>.*?<\/\w+>)/).filter(Boolean).map((piece) => {
     const [, whole = "", around = "", words = ""] = /^\{(\w+)\}$|^<(\w+)>(.*?)<\/\w+>$/.exec(piece) ?? [];
     const element = shown[whole || around];
-    return typeof element === "function" ? element(words) : element ?? piece;
+    return typeof element === "function" ? element(/\{/.test(words) ? pieces(words, shown) : words) : element ?? piece;
   });
 }

@@ -10,6 +10,7 @@ import { t, tx } from "../i18n/text.ts";
 import { useLost, type BenchState } from "../live.ts";
 import { useMay, useMe } from "../session.ts";
 import { linkTo } from "../ui/parts.tsx";
+import { PromptCard } from "./panel-prompt.tsx";
 import { aboutBench, headlineOf, isHeld, titleOf } from "./bench-words.ts";
 
 export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 }): JSX.Element {
@@ -22,8 +23,8 @@ export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 
       {running ? <p>{tx("<a>Run {run}</a>, by {person}: {doing}", { a: linkTo(to.run(running.id)), run: running.id, person: running.requested_by, doing: <English>{running.doing}</English> })}</p> : null}
       {bench.why && !(running && bench.state === "running") ? <p><English>{bench.why}</English></p> : null}
       {running ? <progress max={1} value={running.share ?? 0} aria-label={t("Progress of the run")} /> : null}
-      {message ? <p class="message" role="status">{message}</p> : null}
-      <Actions state={state} />
+      {running?.prompt ? <PromptCard prompt={running.prompt} run={running.id} /> : message ? <p class="message" role="status"><English>{message}</English></p> : null}
+      <Actions state={state} answers={!running?.prompt} />
     </section>
   );
 }

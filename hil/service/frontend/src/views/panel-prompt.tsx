@@ -6,7 +6,7 @@ import { API, post } from "../api/client.ts";
 import { serviceNowMs } from "../api/clock.ts";
 import type { Prompt } from "../api/types.ts";
 import { attempt } from "../data.ts";
-import { duration } from "../format.ts";
+import { roughly } from "../format.ts";
 import { t } from "../i18n/text.ts";
 import { useMay } from "../session.ts";
 
@@ -41,7 +41,7 @@ function Countdown({ until }: { until: string }): JSX.Element {
   const left = Math.max(0, Math.round((Date.parse(until) - useNow()) / 1000));
   return (
     <p class={left <= LITTLE_S ? "countdown bad" : "countdown"} role="timer">
-      {left > 0 ? t("{time} left to answer; then the run ends", { time: left < 60 ? `${left} s` : duration(left) }) : t("The time for an answer is over.")}
+      {left > 0 ? t("{time} left to answer; then the run ends", { time: roughly(left) }) : t("The time for an answer is over.")}
     </p>
   );
 }

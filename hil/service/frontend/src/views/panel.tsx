@@ -3,7 +3,7 @@
 import type { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { to } from "../addresses.ts";
-import { duration, figure, limitText, wordsOf } from "../format.ts";
+import { figure, limitText, roughly, wordsOf } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { t } from "../i18n/text.ts";
 import { useLive, type BenchState, type Live } from "../live.ts";
@@ -58,7 +58,7 @@ function Running({ state: { running } }: { state: BenchState }): JSX.Element | n
   return (
     <>
       <p class="big"><a href={to.run(running.id)}>{t("Run {run}", { run: running.id })}</a>{`: ${titleOf(running)}`}</p>
-      <p class="quiet">{t("by {person}", { person: running.requested_by })}, <English>{running.doing}</English>{left === null ? "" : `, ${t("about {time} left", { time: duration(Math.round(left)) })}`}</p>
+      <p class="quiet">{t("by {person}", { person: running.requested_by })}, <English>{running.doing}</English>{left === null ? "" : `, ${t("about {time} left", { time: roughly(left) })}`}</p>
       <progress max={1} value={running.share ?? 0} aria-label={t("Progress of the run")} />
     </>
   );

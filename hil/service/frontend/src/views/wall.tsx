@@ -3,7 +3,7 @@
 import type { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { to } from "../addresses.ts";
-import { clockTime, duration, moment } from "../format.ts";
+import { clockTime, moment, roughly } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { t } from "../i18n/text.ts";
 import { showAs } from "../theme.ts";
@@ -26,7 +26,7 @@ export function Wall({ bench }: { bench: string | null }): JSX.Element {
         <h1>{bench === null ? t("All benches") : t("Bench {bench}", { bench })}</h1>
         <p class="clock">{clockTime(now)}</p>
       </header>
-      {old ? <p class="alarm" role="alert">{t("NOT CURRENT: no answer of the service for {time}", { time: duration(ageS) })}</p> : null}
+      {old ? <p class="alarm" role="alert">{t("NOT CURRENT: no answer of the service for {time}", { time: roughly(ageS) })}</p> : null}
       {missing ? <p class="alarm">{t("The service has no bench of this name.")}</p> : null}
       {atMs && !missing && !shown.length ? <p>{t("No bench yet.")}</p> : null}
       <ul>{shown.map((one) => <Card key={one.bench.name} of={one} nowMs={now} alone={bench !== null} />)}</ul>
@@ -48,7 +48,7 @@ function Card({ of: { bench, running, queue, latest }, nowMs, alone }: { of: Sho
         <>
           <p class="plan">{titleOf(running)}</p>
           <progress max={1} value={running.share ?? 0} aria-label={t("Progress of run {run}", { run: running.id })} />
-          <p>{left === null ? <English>{running.doing}</English> : t("about {time} left", { time: duration(Math.round(left)) })}</p>
+          <p>{left === null ? <English>{running.doing}</English> : t("about {time} left", { time: roughly(left) })}</p>
         </>
       ) : bench.why ? <p><English>{bench.why}</English></p> : null}
       {queue[0] ? <p class="quiet">{queue.length > 1 ? t("Next: {plan}, by {person}, and {count} more", { plan: titleOf(queue[0]), person: queue[0].requested_by, count: queue.length - 1 }) : t("Next: {plan}, by {person}", { plan: titleOf(queue[0]), person: queue[0].requested_by })}</p> : null}

@@ -4,7 +4,7 @@ import type { ComponentChildren, JSX } from "preact";
 import { t, tx } from "../../i18n/text.ts";
 import { BOUNDS, fieldsOf, type Draft, type Field, type Kind } from "./drafts.ts";
 
-const sub = (text: string): JSX.Element => <sub>{text}</sub>;
+const sub = (words: ComponentChildren): JSX.Element => <sub>{words}</sub>;
 // As shown, and as it is read out.
 const NAMES: Record<Field, [ComponentChildren, string]> = {
   lead_deg: [tx("Lead P<sub>h</sub> in °", { sub }), t("Lead P h in °")],

@@ -73,6 +73,6 @@ function StepPlot({ found, at }: { found: Found[]; at: number }): JSX.Element | 
 function curvesOf(found: Found[], at: number): Curve[] {
   const first = found[0]?.data;
   if (!first) return [];
-  const asked: Curve = { name: t("asked for"), role: "reference", looks: "dashes", x: first.time_s, y: first.time_s.map((time) => (time < 0 ? 0 : first.step_nm)) };
+  const asked: Curve = { name: t("requested torque"), role: "reference", looks: "dashes", x: first.time_s, y: first.time_s.map((time) => (time < 0 ? 0 : first.step_nm)) };
   return [asked, ...found.flatMap(({ name, role, data }) => { const step = data.steps[at]; return step ? [{ name, role, x: data.time_s, y: step.shaft_torque_nm }] : []; })];
 }

@@ -69,7 +69,7 @@ function RunFacts({ run }: { run: Run }): JSX.Element {
         run.dut ? [t("device under test"), run.dut] : null,
         [t("asked for by"), run.requested_by],
         run.approved_by ? [t("approved by"), run.approved_by] : null,
-        [t("queued"), <Moment at={run.queued_at} />],
+        [t("queued at"), <Moment at={run.queued_at} />],
         run.started_at ? [t("began"), <Moment at={run.started_at} />] : null,
         run.ended_at ? [t("ended"), <Moment at={run.ended_at} />] : null,
         run.safe_state ? [t("safe state"), <span class={run.safe_state === "not_confirmed" ? "bad" : ""}>{safe[run.safe_state]}</span>] : null,
