@@ -19,6 +19,7 @@ export const MENU = [
 // Whoever cannot read the page's language finds their own here by its name.
 export const commands = (): Entry[] => [
   ...MENU.map(([view, name, also]) => ({ kind: t("page"), name, about: "", path: to.list(view), also: `page ${also}` })),
+  { kind: t("page"), name: t("For the wall of a control room"), about: "", path: to.wall(), also: "page wall" },
   ...THEMES.map((theme) => ({ kind: t("command"), name: t("Colours: {theme}", { theme: THEME_NAMES[theme] }), about: t("light or dark"), act: () => chooseTheme(theme), also: `command Colours: ${theme}` })),
   ...Object.entries(LANGUAGES).map(([tag, name]) => ({ kind: t("command"), name: t("Language: {language}", { language: name }), about: "", act: () => chooseLanguage(tag as Language), also: `command Language: ${tag}` })),
   { kind: t("command"), name: t("Emergency stop"), about: benchInSight.value || t("all benches"), act: () => void attempt(() => stopNow(benchInSight.value)), also: "command Emergency stop" },

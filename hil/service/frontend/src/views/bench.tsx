@@ -32,7 +32,7 @@ export function BenchView({ bench }: { bench: string }): JSX.Element {
     <>
       <LostNotice />
       {state ? <Banner state={state} level={1} /> : <h1>{t("Bench {bench}", { bench })}</h1>}
-      <p class="links"><a href={to.panel(bench)}>{t("Operator panel")}</a> <a href={`${to.list("runs")}?bench=${encodeURIComponent(bench)}`}>{t("All runs of this bench")}</a></p>
+      <p class="links"><a href={to.panel(bench)}>{t("Operator panel")}</a> <a href={`${to.list("runs")}?bench=${encodeURIComponent(bench)}`}>{t("All runs of this bench")}</a> <a href={to.wall(bench)}>{t("For the wall of a control room")}</a></p>
       {running ? <Running key={running.id} run={running} /> : null}
       <div class="columns">
         <div>

@@ -16,6 +16,7 @@ export function Benches(): JSX.Element {
   return (
     <>
       <Heading>{t("Benches")}</Heading>
+      <p class="links"><a href={to.wall()}>{t("For the wall of a control room")}</a></p>
       <Loaded of={benches} what={t("benches")}>
         {(all) => all.length
           ? <ul class="cards">{all.map((bench) => <Card key={bench.name} bench={bench} />)}</ul>

@@ -1,7 +1,7 @@
 // What a screen on a wall shows: asked again and again, with the moment at which the service was last heard of.
 
 import { useEffect, useState } from "preact/hooks";
-import { get } from "../api/client.ts";
+import { get, Refused } from "../api/client.ts";
 import type { Bench, FoundRuns, Run } from "../api/types.ts";
 import { lookWho } from "../session.ts";
 
@@ -22,7 +22,7 @@ const AGAIN_MS = 2000;
 const PATIENCE_MS = 5000;
 const LATEST = 6;
 
-// Two requests behind each bench: those that nothing is done with are asked for their runs as well, which others began.
+// One request for all benches, and two for each.
 async function look(only: string | null): Promise<Pick<Heard, "shown" | "missing">> {
   const signal = AbortSignal.timeout(PATIENCE_MS);
   const benches = (await get<Bench[]>("/benches", signal)).filter((bench) => only === null || bench.name === only);
@@ -52,8 +52,8 @@ export function useWall(only: string | null): Heard {
       try {
         const found = await look(only);
         if (open) setHeard({ ...found, atMs: performance.now() });
-      } catch { // what is shown stays, and grows old
-        if (open) void lookWho();
+      } catch (error) { // what is shown stays, and grows old
+        if (open && error instanceof Refused && error.status === 401) void lookWho();
       }
       if (open) timer = window.setTimeout(() => void again(), AGAIN_MS);
     };
