@@ -23,7 +23,7 @@ export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 
       {running ? <p>{tx("<a>Run {run}</a>, by {person}: {doing}", { a: linkTo(to.run(running.id)), run: running.id, person: running.requested_by, doing: <English>{running.doing}</English> })}</p> : null}
       {bench.why && !(running && bench.state === "running") ? <p><English>{bench.why}</English></p> : null}
       {running ? <progress max={1} value={running.share ?? 0} aria-label={t("Progress of the run")} /> : null}
-      {running?.prompt ? <PromptCard prompt={running.prompt} run={running.id} /> : message ? <p class="message" role="status"><English>{message}</English></p> : null}
+      {running?.prompt ? <PromptCard prompt={running.prompt} run={running.id} reached={!bench.away_since} /> : message ? <p class="message" role="status"><English>{message}</English></p> : null}
       <Actions state={state} answers={!running?.prompt} />
     </section>
   );

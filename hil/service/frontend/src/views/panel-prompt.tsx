@@ -12,7 +12,8 @@ import { useMay } from "../session.ts";
 
 const LITTLE_S = 30;
 
-export function PromptCard({ prompt, run }: { prompt: Prompt; run: number }): JSX.Element {
+// An answer reaches the run only while whoever drives its bench is there.
+export function PromptCard({ prompt, run, reached }: { prompt: Prompt; run: number; reached: boolean }): JSX.Element {
   const may = useMay(), [text, setText] = useState("");
   const send = (event: Event) => {
     event.preventDefault();
@@ -24,7 +25,7 @@ export function PromptCard({ prompt, run }: { prompt: Prompt; run: number }): JS
       <div>
         <p class="asked" role="status">{prompt.text}</p>
         <Countdown until={prompt.answer_by} />
-        {may("operator") ? (
+        {may("operator") && reached ? (
           <form class="row" onSubmit={send}>
             <label class="field">{t("Answer")}<input maxLength={500} autocomplete="off" value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
             <button type="submit" class="main">{t("Continue")}</button>

@@ -45,7 +45,7 @@ function State({ state }: { state: BenchState }): JSX.Element {
       {running ? <Running state={state} /> : null}
       {bench.why && !running ? <p class="big"><English>{bench.why}</English></p> : null}
       <p class="big">{nextOf(state)}</p>
-      {running && prompt ? <PromptCard prompt={prompt} run={running.id} /> : null}
+      {running && prompt ? <PromptCard prompt={prompt} run={running.id} reached={!bench.away_since} /> : null}
       {running && message && !prompt ? <p class="message" role="status"><English>{message}</English></p> : null}
       <Actions state={state} answers={!prompt} />
     </section>
