@@ -21,7 +21,9 @@ def test_a_picture_is_shown_with_it() -> None:
     assert conductor.calls == [("prompt", "Close the door", "door-1.png")]
 
 
-@pytest.mark.parametrize("name", ["../door.png", "a/door.png", "/door.png", "door.gif", ".png", "door.png\n", 3])
+@pytest.mark.parametrize(
+    "name", ["../door.png", "a/door.png", "/door.png", "door.gif", ".png", "door.png\n", 3]
+)
 def test_a_picture_lies_beside_the_plan_and_is_one_that_browsers_show(name: object) -> None:
     with pytest.raises(BadInputError, match="picture"):
         step_of("operator_prompt", text="Close the door", picture=name)
