@@ -31,6 +31,7 @@ from hil.service.audit import DeferredAudit, problem_of
 from hil.service.durations import Durations
 from hil.service.files.catalogues import controller_catalogue, model_catalogue
 from hil.service.files.legacy_import import LegacyImport
+from hil.service.files.pictures import Pictures
 from hil.service.files.plans import Plans
 from hil.service.files.upload_reader import UploadReader
 from hil.service.files.uploads import Uploads
@@ -126,7 +127,10 @@ class Service:
         given = GivenStore(engine)
         models = Uploads(given, "model", folder / "given/models", ".toml")
         controllers = Uploads(given, "controller", folder / "given/plans", ".toml")
-        self.plans = Plans(Uploads(given, "plan", folder / "given/plans", ".yaml"), controllers)
+        self.pictures = Pictures(given, folder / "given/plans")
+        self.plans = Plans(
+            Uploads(given, "plan", folder / "given/plans", ".yaml"), controllers, self.pictures
+        )
         self.models, self.controllers = model_catalogue(models), controller_catalogue(controllers)
         earlier = LegacyImport(folder, given, self.log, self.plans, self.controllers, self.models)
         self.kept_apart = earlier.take_in()
@@ -243,7 +247,7 @@ class Service:
         if running is not None:
             away = f"; {self.database.away}" if self.database.away else ""
             doing = {"share": running.share, "doing": running.doing + away, "message": running.message}
-            return run.model_copy(update=doing)
+            return run.model_copy(update={**doing, "prompt": running.prompt})
         return run
 
     def files_of(self, run: int) -> list[str]:

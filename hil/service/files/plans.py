@@ -11,6 +11,7 @@ from pathlib import Path
 from hil.api_schemas.api import PlanData
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
+from hil.service.files.pictures import Pictures
 from hil.service.files.uploads import NameTakenError, Uploads
 from hil.service.worker_pool.plan_reading import GivenPlan, data_of, given_plan, read_given
 from test_plans import Choices, Plan, library_plans, load_plan, plan_from_text
@@ -25,10 +26,11 @@ class Plans:
     Args:
         given: those that people gave.
         controllers: that people gave; plans find them beside themselves, in the same folder.
+        pictures: that people gave, for prompts of plans; in the same folder.
     """
 
-    def __init__(self, given: Uploads, controllers: Uploads) -> None:
-        self._given, self._controllers = given, controllers
+    def __init__(self, given: Uploads, controllers: Uploads, pictures: Pictures) -> None:
+        self._given, self._controllers, self._pictures = given, controllers, pictures
         self._built_in = {name: load_plan(name) for name in library_plans()}
         self._read: dict[str, GivenPlan] = {}
 
@@ -172,8 +174,9 @@ class Plans:
         return path
 
     def _with_controllers(self) -> Path:
-        """The folder, once every controller that a given plan may load lies there."""
+        """The folder, once every controller and picture that a given plan may name lies there."""
         self._controllers.paths()
+        self._pictures.bring()
         return self._given.folder
 
 

@@ -1,6 +1,8 @@
-// Numbers and moments as people of the browser's language write them.
+// Numbers and moments as people of the page's language write them, and names of channels in it.
 
-const LOCALE = typeof navigator === "undefined" ? "en" : navigator.language;
+import { LOCALE } from "./i18n/language.ts";
+import { t } from "./i18n/text.ts";
+
 const formats = new Map<string, Intl.NumberFormat>();
 
 function formatOf(options: Intl.NumberFormatOptions): Intl.NumberFormat {
@@ -23,6 +25,12 @@ export function figure(value: number | null | undefined, unit = ""): string {
 export const fixed = (value: number, digits: number): string =>
   formatOf({ minimumFractionDigits: digits, maximumFractionDigits: digits }).format(value);
 
+// With so many digits, and no zeros behind them.
+export function significant(value: number, digits: number): string {
+  const size = Math.abs(value), text = size > 0 && (size < 1e-6 || size >= 1e21) ? { notation: "scientific" as const } : {};
+  return formatOf({ ...text, maximumSignificantDigits: digits, useGrouping: false }).format(value).replace("-", "−");
+}
+
 // As many as tell neighbouring ticks apart: 2.5 has one, 0.25 two.
 export function digitsOf(step: number): number {
   let digits = 0;
@@ -40,11 +48,18 @@ export const joined = (text: string, unit: string): string => (unit && unit !== 
 export function duration(seconds: number): string {
   if (seconds < 60) return joined(fixed(seconds, seconds < 10 ? 1 : 0), "s");
   const minutes = Math.floor(seconds / 60);
-  if (minutes < 60) return `${minutes} min ${Math.round(seconds - 60 * minutes)} s`;
-  return `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
+  if (minutes < 60) return t("{minutes} min {seconds} s", { minutes, seconds: Math.floor(seconds - 60 * minutes) });
+  return t("{hours} h {minutes} min", { hours: Math.floor(minutes / 60), minutes: minutes % 60 });
 }
 
+// As a guess is given: to the second.
+export const roughly = (seconds: number): string => (seconds < 60 ? joined(whole(seconds), "s") : duration(seconds));
+
 const moments = new Intl.DateTimeFormat(LOCALE, { dateStyle: "medium", timeStyle: "short" });
+
+const times = new Intl.DateTimeFormat(LOCALE, { timeStyle: "medium" });
+
+export const clockTime = (ms: number): string => times.format(new Date(ms));
 
 export const moment = (iso: string): string => moments.format(new Date(iso));
 
@@ -55,11 +70,17 @@ export const dayText = (day: string): string => days.format(new Date(`${day}T12:
 
 const UNITS: Record<string, string> = { nm: "N m", rad_s: "rad/s", m_s: "m/s", s: "s", rad: "rad", degc: "°C", v: "V", a: "A", w: "W", hz: "Hz" };
 
+const CHANNELS: Record<string, string> = {
+  motor_speed: t("motor speed"), wheel_speed: t("wheel speed"), wheel_speed_left: t("wheel speed left"), wheel_speed_right: t("wheel speed right"), vehicle_speed: t("vehicle speed"),
+  motor_torque: t("motor torque"), motor_torque_ref: t("motor torque ref"), shaft_torque: t("shaft torque"), shaft_torque_left: t("shaft torque left"), shaft_torque_right: t("shaft torque right"),
+  driving_torque_ref: t("driving torque ref"), driving_torque_est: t("driving torque est"), dyno_torque_left: t("dyno torque left"), dyno_torque_right: t("dyno torque right"),
+};
+
 // A channel's name without its unit, in words.
 export function wordsOf(channel: string): string {
   const ending = Object.keys(UNITS).filter((one) => channel.endsWith(`_${one}`)).sort((one, other) => other.length - one.length)[0];
   const bare = ending ? channel.slice(0, -ending.length - 1) : channel;
-  return bare.replaceAll("_", " ");
+  return CHANNELS[bare] ?? bare.replaceAll("_", " ");
 }
 
 export const limitText = (upper: number | null | undefined, lower: number | null | undefined, unit = ""): string =>

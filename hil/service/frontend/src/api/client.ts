@@ -1,5 +1,7 @@
 // Requests to the service, and errors in its words.
 
+import { t } from "../i18n/text.ts";
+import { noteDate } from "./clock.ts";
 import type { Health, Problem } from "./types.ts";
 
 export const API = "/api/v1";
@@ -17,21 +19,22 @@ export class Refused extends Error {
 
 type Body = object | string | undefined;
 
-// A text is sent as a file, anything else as JSON.
+// A text or a file is sent as it is, anything else as JSON.
 async function fetched(method: string, path: string, body: Body, signal?: AbortSignal): Promise<string> {
   const options: RequestInit = { method, headers: {}, signal: signal ?? null };
   if (body !== undefined) {
-    const isFile = typeof body === "string";
-    options.headers = { "content-type": isFile ? "text/plain" : "application/json" };
-    options.body = isFile ? body : JSON.stringify(body);
+    const isFile = body instanceof Blob, asItIs = typeof body === "string" || isFile;
+    options.headers = { "content-type": isFile ? body.type : asItIs ? "text/plain" : "application/json" };
+    options.body = asItIs ? body : JSON.stringify(body);
   }
   let answer: Response;
   try {
     answer = await fetch(`${API}${path}`, options);
   } catch (error) {
     if (signal?.aborted) throw error;
-    throw new Refused(0, { what: "the service does not answer", where: "", fix: "" });
+    throw new Refused(0, { what: t("the service does not answer"), where: "", fix: "" });
   }
+  noteDate(answer.headers.get("date"));
   const text = await answer.text();
   if (answer.ok) return text;
   throw new Refused(answer.status, problemOf(answer.status, text));
@@ -41,7 +44,7 @@ function problemOf(status: number, text: string): Problem {
   try {
     return JSON.parse(text) as Problem;
   } catch { // a proxy's answer
-    return { what: `status ${status}`, where: "", fix: "" };
+    return { what: t("status {status}", { status }), where: "", fix: "" };
   }
 }
 
@@ -79,7 +82,7 @@ export async function stopNow(bench: string): Promise<void> {
 
 async function byStopPost(path: string): Promise<void> {
   const answer = await fetch(`${stopUrl}${API}${path}`, { method: "POST", credentials: "include" });
-  if (!answer.ok) throw new Refused(answer.status, { what: `status ${answer.status}`, where: "", fix: "" });
+  if (!answer.ok) throw new Refused(answer.status, { what: t("status {status}", { status: answer.status }), where: "", fix: "" });
 }
 
 async function insist(way: () => Promise<unknown>): Promise<void> {

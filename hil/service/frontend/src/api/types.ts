@@ -42,6 +42,7 @@ export type DesignData = Schemas["DesignData"];
 export type Identification = Schemas["IdentificationData"];
 export type CampaignExample = Schemas["CampaignExample"];
 export type CampaignFindings = Schemas["CampaignFindings"];
+export type Prompt = Schemas["PromptData"];
 export type RunNotes = Schemas["RunNotes"];
 export type Person = Schemas["PersonData"];
 export type Reservation = Schemas["ReservationData"];

@@ -4,6 +4,8 @@ import type { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { ask } from "../api/client.ts";
 import { attempt } from "../data.ts";
+import { t } from "../i18n/text.ts";
+import { kindInWords } from "../ui/kinds.ts";
 
 interface Options {
   kind: string;
@@ -26,11 +28,11 @@ export function GiveFile({ kind, path, ending, onGiven }: Options): JSX.Element 
   return (
     <form onSubmit={(event) => void give(event)}>
       <div class="row">
-        <label class="field">{`File (${ending})`}<input type="file" accept={`${ending},text/plain`} onChange={(event) => void take(event.currentTarget.files?.[0])} /></label>
-        <label class="field">Name<input required maxLength={64} pattern="[A-Za-z0-9][A-Za-z0-9_.\-]*" autocomplete="off" value={name} onInput={(event) => setName(event.currentTarget.value)} /></label>
-        <button type="submit" class="main" disabled={!name || !text}>{`Give the ${kind}`}</button>
+        <label class="field">{t("File ({ending})", { ending })}<input type="file" accept={`${ending},text/plain`} onChange={(event) => void take(event.currentTarget.files?.[0])} /></label>
+        <label class="field">{t("Name")}<input required maxLength={64} pattern="[A-Za-z0-9][A-Za-z0-9_.\-]*" autocomplete="off" value={name} onInput={(event) => setName(event.currentTarget.value)} /></label>
+        <button type="submit" class="main" disabled={!name || !text}>{t("Give the {kind}", { kind: kindInWords(kind) })}</button>
       </div>
-      <label class="field">Text<textarea rows={6} spellcheck={false} value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
+      <label class="field">{t("Text")}<textarea rows={6} spellcheck={false} value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
     </form>
   );
 }

@@ -6,6 +6,7 @@ import { get, getText, post } from "../../api/client.ts";
 import type { Controller, Plan } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt } from "../../data.ts";
+import { t } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { NameField } from "../../ui/name-field.tsx";
 import { loadedBy } from "./loaded-controllers.ts";
@@ -36,11 +37,11 @@ export function UseController({ controller: given }: { controller: string }): JS
   };
   return (
     <form class="row" onSubmit={(event) => void make(event)}>
-      <label class="field">Controller<select value={chosen} onChange={(event) => setController(event.currentTarget.value)}>{controllers.map((one) => <option key={one}>{one}</option>)}</select></label>
-      <label class="field">in the plan<select value={of?.plan.name ?? ""} onChange={(event) => setPlan(event.currentTarget.value)}>{plans.map((one) => <option key={one.plan.name} value={one.plan.name}>{one.plan.title || one.plan.name}</option>)}</select></label>
-      <label class="field">in place of<select value={inPlace} onChange={(event) => setFile(event.currentTarget.value)}>{(of?.files ?? []).map((one) => <option key={one}>{one}</option>)}</select></label>
-      <NameField label="as plan" value={name} onChange={setName} optional placeholder={of && chosen ? `${of.plan.name}-${chosen}`.slice(0, 64) : ""} />
-      <button type="submit" disabled={!of || !chosen}>Make the plan</button>
+      <label class="field">{t("Controller")}<select value={chosen} onChange={(event) => setController(event.currentTarget.value)}>{controllers.map((one) => <option key={one}>{one}</option>)}</select></label>
+      <label class="field">{t("in the plan")}<select value={of?.plan.name ?? ""} onChange={(event) => setPlan(event.currentTarget.value)}>{plans.map((one) => <option key={one.plan.name} value={one.plan.name}>{one.plan.title || one.plan.name}</option>)}</select></label>
+      <label class="field">{t("in place of")}<select value={inPlace} onChange={(event) => setFile(event.currentTarget.value)}>{(of?.files ?? []).map((one) => <option key={one}>{one}</option>)}</select></label>
+      <NameField label={t("as plan")} value={name} onChange={setName} optional placeholder={of && chosen ? `${of.plan.name}-${chosen}`.slice(0, 64) : ""} />
+      <button type="submit" disabled={!of || !chosen}>{t("Make the plan")}</button>
     </form>
   );
 }

@@ -6,6 +6,8 @@ import { ask, getText, post } from "../../api/client.ts";
 import type { PlanCheck, PlanMistake } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt } from "../../data.ts";
+import { English } from "../../i18n/english.tsx";
+import { t, tn } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { Section } from "../../ui/parts.tsx";
 import { lineAt, nameIn } from "./plan-text.ts";
@@ -38,13 +40,13 @@ export function PlanEditor({ text: given, builtIn }: { text: string; builtIn: bo
     <form class="columns" onSubmit={(event) => void keep(event)}>
       <div>
         <Lines text={text} wrong={mistakes.map((one) => one.line)} field={field} onText={setText} />
-        <div class="row level"><button type="submit" class="main" disabled={!sound}>{name ? `Keep as ${name}` : "Keep the plan"}</button>
-          <span class="quiet" role="status">{name === null ? "The plan says no name yet." : error || (known !== text ? "Checking …" : sound ? "No mistake was found." : `${mistakes.length} mistakes`)}</span>
+        <div class="row level"><button type="submit" class="main" disabled={!sound}>{name ? t("Keep as {name}", { name }) : t("Keep the plan")}</button>
+          <span class="quiet" role="status">{name === null ? t("The plan says no name yet.") : error ? <English>{error}</English> : (known !== text ? t("Checking …") : sound ? t("No mistake was found.") : tn("{count} mistake", "{count} mistakes", mistakes.length))}</span>
         </div>
-        <ul class="mistakes" aria-label="Mistakes">{mistakes.map((one) => <li key={`${one.line} ${one.key} ${one.text}`}>{one.line === null ? null : <button type="button" class="plain" onClick={() => show(one)}>{`line ${one.line}`}</button>}{` ${one.key ? `${one.key}: ` : ""}${one.text}`}</li>)}</ul>
-        {builtIn ? <p class="quiet">A built-in plan stays as it is: this becomes a plan of its own.</p> : null}
+        <ul class="mistakes" aria-label={t("Mistakes")}>{mistakes.map((one) => <li key={`${one.line} ${one.key} ${one.text}`}>{one.line === null ? null : <button type="button" class="plain" onClick={() => show(one)}>{t("line {line}", { line: one.line })}</button>} <English>{`${one.key ? `${one.key}: ` : ""}${one.text}`}</English></li>)}</ul>
+        {builtIn ? <p class="quiet">{t("A built-in plan stays as it is: this becomes a plan of its own.")}</p> : null}
       </div>
-      <div><Section title="What it would do" label="forecast"><WrittenForecast plan={sound ? (check?.plan ?? null) : null} text={text} /></Section></div>
+      <div><Section title={t("What it would do")} label="forecast"><WrittenForecast plan={sound ? (check?.plan ?? null) : null} text={text} /></Section></div>
     </form>
   );
 }
@@ -82,7 +84,7 @@ function Lines({ text, wrong, field, onText }: LinesOptions): JSX.Element {
   return (
     <div class="editor">
       <div class="numbers" ref={numbers} aria-hidden="true">{Array.from({ length: count }, (_, at) => <div key={at} class={wrong.includes(at + 1) ? "wrong" : ""}>{at + 1}</div>)}</div>
-      <textarea ref={field} aria-label="Text of the plan" rows={28} wrap="off" spellcheck={false} autocomplete="off" maxLength={200_000} aria-invalid={wrong.length > 0} value={text}
+      <textarea ref={field} aria-label={t("Text of the plan")} rows={28} wrap="off" spellcheck={false} autocomplete="off" maxLength={200_000} aria-invalid={wrong.length > 0} value={text}
         onInput={(event) => onText(event.currentTarget.value)} onScroll={(event) => { if (numbers.current) numbers.current.scrollTop = event.currentTarget.scrollTop; }} />
     </div>
   );
@@ -96,5 +98,5 @@ export function EditPlan({ name, builtIn, copied }: { name: string; builtIn: boo
     void attempt(async () => setText(copied(await getText(`/plans/${encodeURIComponent(name)}/text`, control.signal))));
     return () => control.abort();
   }, [name]);
-  return text === null ? <p class="quiet">Loading the text …</p> : <PlanEditor text={text} builtIn={builtIn} />;
+  return text === null ? <p class="quiet">{t("Loading the text …")}</p> : <PlanEditor text={text} builtIn={builtIn} />;
 }

@@ -6,6 +6,7 @@ import { post } from "../../api/client.ts";
 import type { Diagnosis, Model, Study } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
+import { t } from "../../i18n/text.ts";
 import { go, useQuery } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { Heading, Loaded, Section } from "../../ui/parts.tsx";
@@ -19,9 +20,9 @@ export function Diagnoses(): JSX.Element {
   const may = useMay();
   return (
     <>
-      <Heading>Diagnoses</Heading>
+      <Heading>{t("Diagnoses")}</Heading>
       {may("engineer") ? <Begin /> : null}
-      <Section title="All diagnoses" label="all"><StudyList kind="diagnosis" /></Section>
+      <Section title={t("All diagnoses")} label="all"><StudyList kind="diagnosis" /></Section>
     </>
   );
 }
@@ -39,16 +40,16 @@ function Begin(): JSX.Element {
   };
   return (
     <form class="card" onSubmit={(event) => void begin(event)}>
-      <h2>Find what a model lacks</h2>
+      <h2>{t("Find what a model lacks")}</h2>
       <div class="row">
-        <label class="field">Model<select value={model} onChange={(event) => setModel(event.currentTarget.value)}>{models.map((one) => <option key={one.name}>{one.name}</option>)}</select></label>
-        <label class="field">Time limit, minutes<input type="number" min="0.1" max="60" step="any" required value={minutes} onInput={(event) => setMinutes(event.currentTarget.value)} /></label>
+        <label class="field">{t("Model")}<select value={model} onChange={(event) => setModel(event.currentTarget.value)}>{models.map((one) => <option key={one.name}>{one.name}</option>)}</select></label>
+        <label class="field">{t("Time limit, minutes")}<input type="number" min="0.1" max="60" step="any" required value={minutes} onInput={(event) => setMinutes(event.currentTarget.value)} /></label>
       </div>
       <div class="halves">
-        <ChooseRuns legend="Runs to compare with the model" chosen={runs} onChange={setRuns} without={holdout} />
-        <ChooseRuns legend="Runs held out, for validation" chosen={holdout} onChange={setHoldout} without={runs} />
+        <ChooseRuns legend={t("Runs to compare with the model")} chosen={runs} onChange={setRuns} without={holdout} />
+        <ChooseRuns legend={t("Runs held out, for validation")} chosen={holdout} onChange={setHoldout} without={runs} />
       </div>
-      <button type="submit" class="main" disabled={!runs.length || !model}>Diagnose</button>
+      <button type="submit" class="main" disabled={!runs.length || !model}>{t("Diagnose")}</button>
     </form>
   );
 }
@@ -61,7 +62,7 @@ function Result({ study }: { study: Study }): JSX.Element | null {
   const done = (study.files ?? []).includes("diagnosis.json");
   const found = useData<Diagnosis>(done ? `/diagnoses/${study.id}` : null);
   if (!done) return null;
-  return <Loaded of={found} what="the diagnosis">{(data) => <Found data={data} />}</Loaded>;
+  return <Loaded of={found} what={t("the diagnosis")}>{(data) => <Found data={data} />}</Loaded>;
 }
 
 function Found({ data }: { data: Diagnosis }): JSX.Element {
@@ -70,10 +71,10 @@ function Found({ data }: { data: Diagnosis }): JSX.Element {
     <>
       <Effects of={data} />
       {data.alternatives.length ? <Alternatives of={data} /> : null}
-      <Section title="Error over noise, before → after" label="map"><ErrorMap of={data.map} /></Section>
-      <Section title="Gap, % of the signal" label="gap"><Gaps of={data.gap} label="Gap" /></Section>
-      {hasHoldout ? <Section title="Gap on runs that were held out" label="holdout"><Gaps of={data.holdout_gap} label="Gap of held-out runs" /></Section> : null}
-      <KeepModel study={data.study} file="model.toml" what="improved model" />
+      <Section title={t("Error over noise, before → after")} label="map"><ErrorMap of={data.map} /></Section>
+      <Section title={t("Gap, % of the signal")} label="gap"><Gaps of={data.gap} label={t("Gap")} /></Section>
+      {hasHoldout ? <Section title={t("Gap on runs that were held out")} label="holdout"><Gaps of={data.holdout_gap} label={t("Gap of held-out runs")} /></Section> : null}
+      <KeepModel study={data.study} file="model.toml" what={t("improved model")} />
     </>
   );
 }
