@@ -58,6 +58,7 @@ from hil.api_schemas.study import (
     StudyData,
 )
 from hil.api_schemas.upload import KeptApart
+from hil.client._recordings import RecordingRequests
 from hil.client._requests import WITHIN_S, Requests, first_of, part
 from hil.core.errors import BenchError
 
@@ -66,7 +67,7 @@ _REPORTED_WITHIN_S = 5.0
 _LOOK_S = 0.5
 
 
-class Client(Requests):
+class Client(RecordingRequests):
     """A bench service.
 
     Every method raises RefusedError if the service refuses, and BenchError if it cannot be reached or does

@@ -16,6 +16,7 @@ from sqlalchemy import Engine
 
 from hil.api_schemas.api import OVER, BenchData, BenchState, ForecastData, Me, RunData
 from hil.api_schemas.campaign import CampaignData
+from hil.api_schemas.recording import RecordingData
 from hil.api_schemas.study import StudyData
 from hil.execution.background import apart
 from hil.execution.benches import Bench
@@ -39,6 +40,7 @@ from hil.service.jobs.studies import Studies
 from hil.service.live.live_hub import LiveHub
 from hil.service.owners import OwnersKnown
 from hil.service.queue import Queue
+from hil.service.recordings import GivenRecordings, Room
 from hil.service.stop_post import StopPost
 from hil.service.stops import Stops
 from hil.service.store import (
@@ -85,6 +87,7 @@ class Service:
         archive: where files are kept for good; None keeps them in the folder.
         local_days: how long files that the archive has stay in the folder.
         stop_post: takes emergency stops whatever becomes of this.
+        room: for recordings that people give.
 
     Raises:
         BenchError: another service drives one of the benches, or the database is away.
@@ -100,6 +103,7 @@ class Service:
         archive: Archive | None = None,
         local_days: float = 30.0,
         stop_post: StopPost | None = None,
+        room: Room | None = None,
     ) -> None:
         self._own, self._folder = benches, folder
         self.database = Presence(engine)
@@ -119,13 +123,15 @@ class Service:
         studies = SharedResults(results, "study", StudyData, archive, elsewhere / "studies")
         campaigns = SharedResults(results, "campaign", CampaignData, archive, elsewhere / "campaigns")
         self.studies = Studies(folder / "studies", studies)
+        recordings = SharedResults(results, "recording", RecordingData, archive, elsewhere / "recordings")
+        self.recordings = GivenRecordings(folder / "recordings", recordings, room)
         # One worker reads recordings, so that a design in the other does not wait.
         self.worker_pool, self.drawing = WorkerPool(niceness=10), WorkerPool(niceness=0)
         # And one looks at runs: an hour that no one followed takes it ten seconds, once.
         self.viewing = WorkerPool(niceness=5, within_s=_VIEW_S)
         self.upload_reader = UploadReader(self.plans)
         self.campaigns = Campaigns(folder / "campaigns", simulating, self.worker_pool, campaigns)
-        self.sharing = Rounds(self._share, "files of studies and campaigns")
+        self.sharing = Rounds(self._share, "files of studies, campaigns and recordings")
         self._held = held
         self.live_hub = LiveHub(lambda: self.benches, self.running, folder / "overviews")
         runs_folder = folder / "runs"
@@ -148,7 +154,7 @@ class Service:
         self.deferred_audit = DeferredAudit(self.log)
 
     async def _share(self) -> str:
-        problems = await self.studies.share(), await self.campaigns.share()
+        problems = await self.studies.share(), await self.campaigns.share(), await self.recordings.share()
         return "; ".join(filter(None, problems))
 
     @property

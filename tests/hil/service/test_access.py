@@ -100,6 +100,14 @@ LEAST = {
     ("DELETE", "/campaigns/{campaign}"): "engineer",
     ("POST", "/campaigns/{campaign}/resume"): "engineer",
     ("GET", "/campaigns/{campaign}/files/{name}"): "viewer",
+    ("GET", "/recordings"): "viewer",
+    ("POST", "/recordings"): "engineer",
+    ("GET", "/recordings/{recording}"): "viewer",
+    ("DELETE", "/recordings/{recording}"): "engineer",
+    ("PUT", "/recordings/{recording}/content"): "engineer",
+    ("POST", "/recordings/{recording}/ending"): "engineer",
+    ("POST", "/recordings/{recording}/check"): "engineer",
+    ("GET", "/recordings/{recording}/files/{name}"): "viewer",
     ("GET", "/me"): "viewer",
     ("POST", "/session"): "",
     ("DELETE", "/session"): "",
@@ -111,6 +119,7 @@ LEAST = {
 #: Names of things that there are not: who may ask hears 404 or 422, nothing is changed.
 _NONE = {"bench": "none", "plan": "none", "run": "2000000000", "token": "2000000000", "name": "x"}
 _NONE |= {"agent": "0" * 32, "order": "0" * 16, "model": "none", "controller": "none"}
+_NONE |= {"recording": "2000000000"}
 _NONE |= {"study": "2000000000", "campaign": "2000000000", "note": "2000000000", "tag": "x", "kind": "plan"}
 
 
