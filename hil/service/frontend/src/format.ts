@@ -37,6 +37,12 @@ export const whole = (value: number): string => formatOf({ maximumFractionDigits
 
 export const joined = (text: string, unit: string): string => (unit && unit !== "1" ? `${text}\u00a0${unit}` : text);
 
+// As disks and files are given: 1 MB is a million.
+export function bytes(count: number): string {
+  const [unit, size] = count >= 1e9 ? ["GB", 1e9] : count >= 1e6 ? ["MB", 1e6] : count >= 1e3 ? ["kB", 1e3] : ["B", 1] as const;
+  return joined(fixed(count / size, size === 1 || count / size >= 100 ? 0 : 1), unit);
+}
+
 export function duration(seconds: number): string {
   if (seconds < 60) return joined(fixed(seconds, seconds < 10 ? 1 : 0), "s");
   const minutes = Math.floor(seconds / 60);

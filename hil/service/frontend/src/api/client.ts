@@ -15,15 +15,15 @@ export class Refused extends Error {
   }
 }
 
-type Body = object | string | undefined;
+type Body = object | string | Uint8Array<ArrayBuffer> | undefined;
 
-// A text is sent as a file, anything else as JSON.
+// A text and bytes are sent as files, anything else as JSON.
 async function fetched(method: string, path: string, body: Body, signal?: AbortSignal): Promise<string> {
   const options: RequestInit = { method, headers: {}, signal: signal ?? null };
   if (body !== undefined) {
-    const isFile = typeof body === "string";
-    options.headers = { "content-type": isFile ? "text/plain" : "application/json" };
-    options.body = isFile ? body : JSON.stringify(body);
+    const isText = typeof body === "string", isFile = body instanceof Uint8Array;
+    options.headers = { "content-type": isText ? "text/plain" : isFile ? "application/octet-stream" : "application/json" };
+    options.body = isText || isFile ? body : JSON.stringify(body);
   }
   let answer: Response;
   try {

@@ -45,4 +45,5 @@ export type CampaignFindings = Schemas["CampaignFindings"];
 export type RunNotes = Schemas["RunNotes"];
 export type Note = Schemas["NoteData"];
 export type PlanCheck = Schemas["PlanCheck"];
+export type Recording = Schemas["RecordingData"];
 export type PlanMistake = Schemas["PlanMistake"];

@@ -13,6 +13,7 @@ import { Design } from "./design/design.tsx";
 import { Controllers, ControllerView, Models, ModelView } from "./given.tsx";
 import { Panel } from "./panel.tsx";
 import { Plans, PlanView } from "./plans/plans.tsx";
+import { Recordings, RecordingView } from "./recordings/recordings.tsx";
 import { RunView } from "./runs/run.tsx";
 import { Runs } from "./runs/runs.tsx";
 import { Settings } from "./settings.tsx";
@@ -36,6 +37,8 @@ export function View({ place }: { place: Place }): JSX.Element {
     case "controllers": return <Controllers />;
     case "controller": return <ControllerView key={place.name} name={place.name} />;
     case "design": return <Design />;
+    case "recordings": return <Recordings />;
+    case "recording": return <RecordingView key={place.id} id={place.id} />;
     case "identifications": return <Identifications />;
     case "identification": return <IdentificationView key={place.id} id={place.id} />;
     case "diagnoses": return <Diagnoses />;
