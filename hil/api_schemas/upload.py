@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-GivenKind = Literal["model", "controller", "plan"]
+GivenKind = Literal["model", "controller", "plan", "bench"]
 
 
 class KeptApart(BaseModel):

@@ -29,7 +29,7 @@ from hil.service.agents.remote_bench import RemoteBench
 from hil.service.agents.run_upload import RunUploads
 from hil.service.archive import Archive, Keeper, Rounds
 from hil.service.audit import DeferredAudit, problem_of
-from hil.service.files.catalogues import controller_catalogue, model_catalogue
+from hil.service.files.catalogues import bench_catalogue, controller_catalogue, model_catalogue
 from hil.service.files.legacy_import import LegacyImport
 from hil.service.files.plans import Plans
 from hil.service.files.upload_reader import UploadReader
@@ -57,6 +57,7 @@ from hil.service.store import (
     RunList,
     RunStore,
     TokenStore,
+    VersionStore,
 )
 from hil.service.worker_pool import WorkerPool
 from test_plans import Plan
@@ -115,6 +116,8 @@ class Service:
         models = Uploads(given, "model", folder / "given/models", ".toml")
         controllers = Uploads(given, "controller", folder / "given/plans", ".toml")
         self.plans = Plans(Uploads(given, "plan", folder / "given/plans", ".yaml"), controllers)
+        self.bench_files = bench_catalogue(Uploads(given, "bench", folder / "given/benches", ".toml"))
+        self.versions = VersionStore(engine)
         self.models, self.controllers = model_catalogue(models), controller_catalogue(controllers)
         earlier = LegacyImport(folder, given, self.log, self.plans, self.controllers, self.models)
         self.kept_apart = earlier.take_in()

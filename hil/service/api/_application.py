@@ -10,6 +10,7 @@ from starlette.types import ASGIApp
 
 from hil.service.api import (
     _agents,
+    _bench_files,
     _benches,
     _campaigns,
     _comparisons,
@@ -27,6 +28,7 @@ from hil.service.api import (
     _runs,
     _studies,
     _trends,
+    _versions,
 )
 from hil.service.api._guard import Guard, Guarding
 from hil.service.api._problems import RESPONSES, answer_problems
@@ -47,6 +49,8 @@ _PARTS = (
     _comparisons,
     _trends,
     _design,
+    _bench_files,
+    _versions,
     _recordings,
     _studies,
     _campaigns,

@@ -15,6 +15,7 @@ from hil.service.store._results import ResultKind, ResultStore, SharedJob
 from hil.service.store._run_list import RunList
 from hil.service.store._runs import NewRun, RunStore
 from hil.service.store._tables import Base
+from hil.service.store._versions import GivenVersion, VersionStore
 
 __all__ = [
     "SESSION_S",
@@ -27,6 +28,7 @@ __all__ = [
     "FileStore",
     "GivenStore",
     "GivenText",
+    "GivenVersion",
     "KeptFile",
     "LayoutStore",
     "LeaseStore",
@@ -41,6 +43,7 @@ __all__ = [
     "RunStore",
     "SharedJob",
     "TokenStore",
+    "VersionStore",
     "asked_apart",
     "in_turns",
     "open_database",

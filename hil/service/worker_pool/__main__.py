@@ -34,6 +34,7 @@ TASKS = {
     "read_plan": "plan_reading:plan",
     "read_model": "plan_reading:model",
     "read_controller": "plan_reading:controller",
+    "read_file": "file_checking:file",
     "read_recording": "recording_reading:recording",
     "schema": "plan_reading:schema",
     "campaign_examples": "_campaigning:examples",

@@ -100,6 +100,13 @@ LEAST = {
     ("DELETE", "/campaigns/{campaign}"): "engineer",
     ("POST", "/campaigns/{campaign}/resume"): "engineer",
     ("GET", "/campaigns/{campaign}/files/{name}"): "viewer",
+    ("GET", "/bench-files"): "viewer",
+    ("GET", "/bench-files/{bench}/text"): "viewer",
+    ("PUT", "/bench-files/{bench}"): "engineer",
+    ("DELETE", "/bench-files/{bench}"): "engineer",
+    ("POST", "/file-checks"): "engineer",
+    ("GET", "/versions/{kind}/{name}"): "viewer",
+    ("GET", "/versions/{kind}/{name}/{number}/text"): "viewer",
     ("GET", "/recordings"): "viewer",
     ("POST", "/recordings"): "engineer",
     ("GET", "/recordings/{recording}"): "viewer",
@@ -119,7 +126,7 @@ LEAST = {
 #: Names of things that there are not: who may ask hears 404 or 422, nothing is changed.
 _NONE = {"bench": "none", "plan": "none", "run": "2000000000", "token": "2000000000", "name": "x"}
 _NONE |= {"agent": "0" * 32, "order": "0" * 16, "model": "none", "controller": "none"}
-_NONE |= {"recording": "2000000000"}
+_NONE |= {"recording": "2000000000", "number": "1"}
 _NONE |= {"study": "2000000000", "campaign": "2000000000", "note": "2000000000", "tag": "x", "kind": "plan"}
 
 

@@ -1,15 +1,15 @@
 // Every view has an address: what it says, and how it is written.
 
 export type Place =
-  | { view: "benches" | "runs" | "compare" | "trends" | "plans" | "models" | "controllers" | "design" | "recordings" | "identifications" | "diagnoses" | "campaigns" | "audit" | "settings" }
+  | { view: "benches" | "runs" | "compare" | "trends" | "plans" | "models" | "controllers" | "bench-files" | "design" | "recordings" | "identifications" | "diagnoses" | "campaigns" | "audit" | "settings" }
   | { view: "bench" | "panel"; bench: string }
   | { view: "run"; run: number }
-  | { view: "plan" | "model" | "controller"; name: string }
+  | { view: "plan" | "model" | "controller" | "bench-file"; name: string }
   | { view: "recording" | "identification" | "diagnosis" | "campaign"; id: number }
   | { view: "missing"; path: string };
 
-const LISTS = ["benches", "runs", "compare", "trends", "plans", "models", "controllers", "design", "recordings", "identifications", "diagnoses", "campaigns", "audit", "settings"] as const;
-const NAMED = { plans: "plan", models: "model", controllers: "controller" } as const;
+const LISTS = ["benches", "runs", "compare", "trends", "plans", "models", "controllers", "bench-files", "design", "recordings", "identifications", "diagnoses", "campaigns", "audit", "settings"] as const;
+const NAMED = { plans: "plan", models: "model", controllers: "controller", "bench-files": "bench-file" } as const;
 const NUMBERED = { recordings: "recording", identifications: "identification", diagnoses: "diagnosis", campaigns: "campaign" } as const;
 
 export function placeOf(path: string): Place {
@@ -61,6 +61,7 @@ export const to = {
   plan: (plan: string): string => `/plans/${name(plan)}`,
   model: (model: string): string => `/models/${name(model)}`,
   controller: (controller: string): string => `/controllers/${name(controller)}`,
+  benchFile: (file: string): string => `/bench-files/${name(file)}`,
   recording: (id: number): string => `/recordings/${id}`,
   identification: (id: number): string => `/identifications/${id}`,
   diagnosis: (id: number): string => `/diagnoses/${id}`,
@@ -69,7 +70,7 @@ export const to = {
 };
 
 const TITLES: Record<(typeof LISTS)[number], string> = {
-  benches: "Benches", runs: "Runs", compare: "Compare runs", trends: "Trends", plans: "Plans", models: "Models", controllers: "Controllers",
+  benches: "Benches", runs: "Runs", compare: "Compare runs", trends: "Trends", plans: "Plans", models: "Models", controllers: "Controllers", "bench-files": "Bench files",
   design: "Design a controller", recordings: "Recordings", identifications: "Identifications", diagnoses: "Diagnoses", campaigns: "Campaigns", audit: "Audit log", settings: "Settings",
 };
 
@@ -84,6 +85,7 @@ export function titleOf(place: Place): string {
     case "recording": return `Recording ${place.id}`;
     case "identification": return `Identification ${place.id}`;
     case "diagnosis": return `Diagnosis ${place.id}`;
+    case "bench-file": return `Bench file ${place.name}`;
     case "campaign": return `Campaign ${place.id}`;
     case "missing": return "No such page";
     default: return TITLES[place.view];

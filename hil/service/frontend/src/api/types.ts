@@ -46,4 +46,7 @@ export type RunNotes = Schemas["RunNotes"];
 export type Note = Schemas["NoteData"];
 export type PlanCheck = Schemas["PlanCheck"];
 export type Recording = Schemas["RecordingData"];
+export type FileCheck = Schemas["FileCheck"];
+export type Version = Schemas["VersionData"];
+export type BenchFile = Schemas["BenchFileData"];
 export type PlanMistake = Schemas["PlanMistake"];

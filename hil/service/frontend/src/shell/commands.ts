@@ -10,7 +10,7 @@ import { signOut } from "./sign-in.tsx";
 
 export const MENU = [
   ["benches", "Benches"], ["runs", "Runs"], ["compare", "Compare"], ["trends", "Trends"], ["plans", "Plans"], ["models", "Models"],
-  ["controllers", "Controllers"], ["design", "Design"], ["recordings", "Recordings"], ["identifications", "Identify"], ["diagnoses", "Diagnose"], ["campaigns", "Campaigns"], ["audit", "Audit"], ["settings", "Settings"],
+  ["controllers", "Controllers"], ["bench-files", "Bench files"], ["design", "Design"], ["recordings", "Recordings"], ["identifications", "Identify"], ["diagnoses", "Diagnose"], ["campaigns", "Campaigns"], ["audit", "Audit"], ["settings", "Settings"],
 ] as const;
 
 export const commands = (): Entry[] => [

@@ -10,7 +10,7 @@ import { CampaignView } from "./campaigns/campaign.tsx";
 import { Campaigns } from "./campaigns/campaigns.tsx";
 import { Compare } from "./compare.tsx";
 import { Design } from "./design/design.tsx";
-import { Controllers, ControllerView, Models, ModelView } from "./given.tsx";
+import { BenchFiles, BenchFileView, Controllers, ControllerView, Models, ModelView } from "./given/given.tsx";
 import { Panel } from "./panel.tsx";
 import { Plans, PlanView } from "./plans/plans.tsx";
 import { Recordings, RecordingView } from "./recordings/recordings.tsx";
@@ -36,6 +36,8 @@ export function View({ place }: { place: Place }): JSX.Element {
     case "model": return <ModelView key={place.name} name={place.name} />;
     case "controllers": return <Controllers />;
     case "controller": return <ControllerView key={place.name} name={place.name} />;
+    case "bench-files": return <BenchFiles />;
+    case "bench-file": return <BenchFileView key={place.name} name={place.name} />;
     case "design": return <Design />;
     case "recordings": return <Recordings />;
     case "recording": return <RecordingView key={place.id} id={place.id} />;

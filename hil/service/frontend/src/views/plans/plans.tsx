@@ -6,6 +6,7 @@ import { ask, getText } from "../../api/client.ts";
 import type { Plan } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
+import { Versions, versionPath } from "../../editor/versions.tsx";
 import { limitText } from "../../format.ts";
 import { go, useQuery } from "../../router.ts";
 import { useMay } from "../../session.ts";
@@ -14,7 +15,7 @@ import { EditPlan, PlanEditor } from "./plan-editor.tsx";
 import { renamed, START } from "./plan-text.ts";
 import { valuesFrom } from "./start-values.ts";
 import { StartPlan } from "./start-plan.tsx";
-import { GiveFile } from "../give-file.tsx";
+import { GiveFile } from "../given/give-file.tsx";
 
 export function Plans(): JSX.Element {
   const plans = useData<Plan[]>("/plans"), [query] = useQuery();
@@ -40,7 +41,7 @@ export function Plans(): JSX.Element {
         )}
       </Loaded>
       {may("engineer") ? <p><a href={`${to.list("plans")}?write=new`}>Write a plan</a></p> : null}
-      {may("engineer") ? <Section title="Give a plan" label="give"><GiveFile kind="plan" path="/plans" ending=".yaml" onGiven={(name) => go(to.plan(name))} /></Section> : null}
+      {may("engineer") ? <Section title="Give a plan" label="give"><GiveFile submit="Give the plan" path="/plans" ending=".yaml" onGiven={(name) => go(to.plan(name))} /></Section> : null}
     </>
   );
 }
@@ -51,14 +52,14 @@ export function PlanView({ name }: { name: string }): JSX.Element {
 }
 
 function Found({ plan }: { plan: Plan }): JSX.Element {
-  const may = useMay(), [query] = useQuery();
+  const may = useMay(), [query] = useQuery(), textPath = `/plans/${encodeURIComponent(plan.name)}/text`, version = Number(query.get("version")) || null;
   const remove = async () => {
     if (!confirm(`Remove the plan ${plan.name}? Its runs stay.`)) return;
     if (await attempt(async () => { await ask("DELETE", `/plans/${encodeURIComponent(plan.name)}`); return true; })) go(to.list("plans"));
   };
   const variables = Object.entries(plan.variables);
   const edited = (text: string) => (plan.built_in ? renamed(text, `${plan.name}_copy`) : text);
-  if (query.get("write") === "on" && may("engineer")) return <><Heading kind={<a href={to.plan(plan.name)}>{plan.name}</a>}>{plan.built_in ? "A copy of this plan" : "Edit the plan"}</Heading><EditPlan name={plan.name} builtIn={plan.built_in} copied={edited} /></>;
+  if (query.get("write") === "on" && may("engineer")) return <><Heading kind={<a href={to.plan(plan.name)}>{plan.name}</a>}>{plan.built_in ? "A copy of this plan" : "Edit the plan"}</Heading><EditPlan name={plan.name} path={version === null ? textPath : versionPath("plan", plan.name, version)} builtIn={plan.built_in} copied={edited} /></>;
   return (
     <>
       <Heading kind={`${plan.built_in ? "Built-in plan" : "Given plan"} ${plan.name}`}>{plan.title || plan.name}</Heading>
@@ -75,7 +76,8 @@ function Found({ plan }: { plan: Plan }): JSX.Element {
               </table></Scroll>
             </Section>
           ) : null}
-          <Section title="Text" label="text"><FileText path={`/plans/${encodeURIComponent(plan.name)}/text`} label={`Plan ${plan.name}`} /></Section>
+          <Section title="Text" label="text"><FileText path={textPath} label={`Plan ${plan.name}`} /></Section>
+          <Versions kind="plan" name={plan.name} textPath={textPath} editPath={`${to.plan(plan.name)}?write=on`} />
           {may("engineer") && !plan.built_in ? <div class="row"><button type="button" onClick={() => void remove()}>Remove the plan</button></div> : null}
         </div>
         {may("operator") ? <div><Section title="Start it" label="start"><StartPlan plan={plan.name} from={valuesFrom(query)} /></Section></div> : null}
