@@ -47,6 +47,7 @@ class BenchFileData(_Data):
     title: str
     simulated: bool
     built_in: bool
+    served: bool = Field(False, description="whether it is a bench of this service by now")
 
 
 class VersionData(_Data):

@@ -89,7 +89,7 @@ def _of_margins(found: Margins) -> list[dict[str, Any]]:
         _figure("phase margin", found.phase_margin_deg, "°"),
         _figure("delay margin", 1e3 * found.delay_margin_s, "ms"),
         _figure("largest sensitivity", found.sensitivity_peak, "1"),
-        _figure("at", found.sensitivity_peak_hz, "Hz"),
+        _figure("frequency of the largest sensitivity", found.sensitivity_peak_hz, "Hz"),
         _figure("largest sensitivity, 8 to 20 Hz", found.comfort_peak, "1"),
     ]
 

@@ -104,6 +104,8 @@ LEAST = {
     ("GET", "/bench-files/{bench}/text"): "viewer",
     ("PUT", "/bench-files/{bench}"): "engineer",
     ("DELETE", "/bench-files/{bench}"): "engineer",
+    ("PUT", "/bench-files/{bench}/service"): "engineer",
+    ("DELETE", "/bench-files/{bench}/service"): "engineer",
     ("POST", "/file-checks"): "engineer",
     ("GET", "/versions/{kind}/{name}"): "viewer",
     ("GET", "/versions/{kind}/{name}/{number}/text"): "viewer",

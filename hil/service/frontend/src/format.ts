@@ -56,9 +56,15 @@ export const moment = (iso: string): string => moments.format(new Date(iso));
 
 const UNITS: Record<string, string> = { nm: "N m", rad_s: "rad/s", m_s: "m/s", s: "s", rad: "rad", degc: "°C", v: "V", a: "A", w: "W", hz: "Hz" };
 
+const endingOf = (name: string): string | undefined =>
+  Object.keys(UNITS).filter((one) => name.endsWith(`_${one}`)).sort((one, other) => other.length - one.length)[0];
+
+// The unit that a name ends with; "" if it ends with none.
+export const unitIn = (name: string): string => UNITS[endingOf(name) ?? ""] ?? "";
+
 // A channel's name without its unit, in words.
 export function wordsOf(channel: string): string {
-  const ending = Object.keys(UNITS).filter((one) => channel.endsWith(`_${one}`)).sort((one, other) => other.length - one.length)[0];
+  const ending = endingOf(channel);
   const bare = ending ? channel.slice(0, -ending.length - 1) : channel;
   return bare.replaceAll("_", " ");
 }

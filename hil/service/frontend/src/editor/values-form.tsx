@@ -2,8 +2,9 @@
 
 import type { JSX } from "preact";
 import { useData } from "../data.ts";
+import { unitIn, wordsOf } from "../format.ts";
 import { t } from "../i18n/text.ts";
-import { inWords, Section } from "../ui/parts.tsx";
+import { Section } from "../ui/parts.tsx";
 import { changed, isNumber, scalarsOf, type Scalar } from "./scalars.ts";
 import type { Schema } from "./schema.ts";
 
@@ -21,8 +22,8 @@ export function ValuesForm({ schema, text, onText }: { schema: string; text: str
 }
 
 function Field({ of, onValue }: { of: Scalar; onValue: (value: string) => void }): JSX.Element {
-  const { key, value, table } = of, bare = value.replace(/^"(.*)"$/, "$1");
-  const name = <>{table ? <span class="quiet">{`${table} `}</span> : null}{inWords(key.name)}{key.about ? <span class="quiet">{` ${key.about}`}</span> : null}</>;
+  const { key, value, table } = of, about = [unitIn(key.name), key.about].filter(Boolean).join(", "), bare = value.replace(/^"(.*)"$/, "$1");
+  const name = <>{table ? <span class="quiet">{`${table} `}</span> : null}{wordsOf(key.name)}{about ? <span class="quiet">{` ${about}`}</span> : null}</>;
   const choices = key.values.includes(bare) ? key.values : null;
   return (
     <label class="field"><span>{name}</span>

@@ -10,11 +10,12 @@ import { signOut } from "./sign-in.tsx";
 
 export const MENU = [
   ["benches", "Benches"], ["runs", "Runs"], ["compare", "Compare"], ["trends", "Trends"], ["plans", "Plans"], ["models", "Models"],
-  ["controllers", "Controllers"], ["bench-files", "Bench files"], ["design", "Design"], ["recordings", "Recordings"], ["identifications", "Identify"], ["diagnoses", "Diagnose"], ["campaigns", "Campaigns"], ["audit", "Audit"], ["settings", "Settings"],
+  ["controllers", "Controllers"], ["design", "Design"], ["recordings", "Recordings"], ["identifications", "Identify"], ["diagnoses", "Diagnose"], ["campaigns", "Campaigns"], ["audit", "Audit"], ["settings", "Settings"],
 ] as const;
+const MORE = [["bench-files", "Bench files"]] as const; // beside the menu, which is full
 
 export const commands = (): Entry[] => [
-  ...MENU.map(([view, name]) => ({ kind: "page", name, about: "", path: to.list(view) })),
+  ...[...MENU, ...MORE].map(([view, name]) => ({ kind: "page", name, about: "", path: to.list(view) })),
   ...THEMES.map((theme) => ({ kind: "command", name: `Colours: ${theme}`, about: "light or dark", act: () => chooseTheme(theme) })),
   { kind: "command", name: "Emergency stop", about: benchInSight.value || "all benches", act: () => void attempt(() => stopNow(benchInSight.value)) },
   { kind: "command", name: "Sign out", about: "", act: () => void signOut() },

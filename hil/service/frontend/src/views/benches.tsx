@@ -4,6 +4,7 @@ import type { JSX } from "preact";
 import type { Bench, Run } from "../api/types.ts";
 import { to } from "../addresses.ts";
 import { useData } from "../data.ts";
+import { t } from "../i18n/text.ts";
 import { Heading, Loaded } from "../ui/parts.tsx";
 import { STATES } from "./bench-words.ts";
 
@@ -19,6 +20,7 @@ export function Benches(): JSX.Element {
           ? <ul class="cards">{all.map((bench) => <Card key={bench.name} bench={bench} />)}</ul>
           : <p>No bench yet. Agents bring them: <code>hil bench agent --server URL</code></p>}
       </Loaded>
+      <p class="links"><a href={to.list("bench-files")}>{t("Bench files")}</a></p>
     </>
   );
 }

@@ -57,7 +57,7 @@ export function BenchFiles(): JSX.Element {
         {(all) => (
           <Scroll label={t("Bench files")}><table>
             <thead><tr><th scope="col">{t("bench file")}</th><th scope="col">{t("title")}</th><th scope="col">{t("kind")}</th><th scope="col">{t("from")}</th></tr></thead>
-            <tbody>{all.map((one) => <tr key={one.name}><th scope="row"><a href={to.benchFile(one.name)}>{one.name}</a></th><td>{one.title}</td><td>{one.simulated ? t("simulated") : t("hardware")}</td><td>{one.built_in ? t("shipped") : t("given")}</td></tr>)}</tbody>
+            <tbody>{all.map((one) => <tr key={one.name}><th scope="row"><a href={to.benchFile(one.name)}>{one.name}</a></th><td>{one.title}</td><td>{one.simulated ? t("simulated") : t("hardware")}</td><td>{one.built_in ? t("shipped") : one.served ? t("given, in service") : t("given")}</td></tr>)}</tbody>
           </table></Scroll>
         )}
       </Loaded>
@@ -81,7 +81,32 @@ function List({ kind, title, also, children }: { kind: GivenKind; title: string;
 }
 
 export const ModelView = ({ name }: { name: string }): JSX.Element => <Given name={name} kind="model" />;
-export const BenchFileView = ({ name }: { name: string }): JSX.Element => <Given name={name} kind="bench" />;
+
+export function BenchFileView({ name }: { name: string }): JSX.Element {
+  const may = useMay(), { isOn } = useWritten();
+  return (
+    <>
+      <Given name={name} kind="bench" />
+      {may("engineer") && !isOn ? <ServeBench name={name} /> : null}
+    </>
+  );
+}
+
+// What a given bench file simulates becomes a bench of the service, and is none any more.
+function ServeBench({ name }: { name: string }): JSX.Element | null {
+  const files = useData<BenchFile[]>("/bench-files"), found = files.data?.find((one) => one.name === name);
+  if (!found || found.built_in) return null;
+  const turn = async () => {
+    await attempt(() => ask(found.served ? "DELETE" : "PUT", `/bench-files/${encodeURIComponent(name)}/service`));
+    files.again();
+  };
+  return (
+    <Section title={t("Runs on it")} label="service">
+      {found.simulated ? <div class="row level"><button type="button" onClick={() => void turn()}>{found.served ? t("Take the bench out of service") : t("Put the bench into service")}</button>{found.served ? <a href={to.bench(name)}>{t("Bench {name}", { name })}</a> : null}</div>
+        : <p class="quiet">{t("A bench on hardware is served where its buses are: hil serve --bench FILE, or an agent there.")}</p>}
+    </Section>
+  );
+}
 
 export function ControllerView({ name }: { name: string }): JSX.Element {
   const may = useMay(), { isOn } = useWritten();
