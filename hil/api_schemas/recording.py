@@ -66,3 +66,22 @@ class RecordingData(Record):
     notes: list[str] = Field([], description="what reading assumed, mended or found damaged")
     used: str = Field("", description="file that studies read")
     files: list[str] = Field([])
+
+
+class RecordingCurve(_Data):
+    """A channel in equal buckets; `gap` is the rms of the difference from the recording over its own rms."""
+
+    channel: str
+    unit: str
+    lowest: list[float | None]
+    highest: list[float | None]
+    gap: float | None = Field(None, description="of a simulated channel; null of a recorded one")
+
+
+class RecordingCurves(_Data):
+    """Channels of a recording, or of a model that was driven by it, so that no peak is lost."""
+
+    start_s: float
+    width_s: float
+    curves: list[RecordingCurve]
+    notes: list[str]

@@ -4,12 +4,19 @@ from __future__ import annotations
 
 import hashlib
 import time
+import urllib.parse
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from hil.api_schemas.agent import MOST_PIECE_BYTES, FileThere
 from hil.api_schemas.api import Me
-from hil.api_schemas.recording import RecordingColumns, RecordingData, RecordingWanted, RecordingWhole
+from hil.api_schemas.recording import (
+    RecordingColumns,
+    RecordingCurves,
+    RecordingData,
+    RecordingWanted,
+    RecordingWhole,
+)
 from hil.client._requests import WITHIN_S, RefusedError, Requests, part
 from hil.core.errors import BadInputError
 from hil.core.files import open_regular
@@ -17,6 +24,7 @@ from hil.core.files import open_regular
 _LOOK_S = 0.2
 _AGAIN_S = 1.0
 _GONE_S = 60.0
+_SHOWN_WITHIN_S = 300.0
 _READ = ("ready", "refused")
 
 
@@ -71,6 +79,18 @@ class RecordingRequests(Requests):
         """
         wanted = RecordingColumns(columns=list(columns))
         return self._read_there(self._one(RecordingData, "POST", f"/recordings/{recording}/check", wanted))
+
+    def recording_curves(self, recording: int, channels: Sequence[str], most: int = 600) -> RecordingCurves:
+        """Channels of one, each as lowest and highest value in `most` buckets."""
+        query = urllib.parse.urlencode({"channel": list(channels), "most": most}, doseq=True)
+        path = f"/recordings/{recording}/curves?{query}"
+        return self._one(RecordingCurves, "GET", path, within_s=_SHOWN_WITHIN_S)
+
+    def simulate_recording(self, recording: int, model: str, most: int = 600) -> RecordingCurves:
+        """Outputs of a model that is driven by a recording's torque, with their gaps."""
+        query = urllib.parse.urlencode({"model": model, "most": most})
+        path = f"/recordings/{recording}/simulation?{query}"
+        return self._one(RecordingCurves, "GET", path, within_s=_SHOWN_WITHIN_S)
 
     def remove_recording(self, recording: int) -> None:
         """Remove one with its files; studies of it stay."""

@@ -10,7 +10,15 @@ from starlette.responses import Response
 
 from hil.api_schemas.agent import MOST_FILE_BYTES, FileThere, Sha256
 from hil.api_schemas.api import Me, RunId
-from hil.api_schemas.recording import RecordingColumns, RecordingData, RecordingWanted, RecordingWhole
+from hil.api_schemas.comparison import ChannelName
+from hil.api_schemas.design import FileName
+from hil.api_schemas.recording import (
+    RecordingColumns,
+    RecordingCurves,
+    RecordingData,
+    RecordingWanted,
+    RecordingWhole,
+)
 from hil.api_schemas.study import STUDY_OVER
 from hil.service.api._access import Engineer, TheService, Viewer
 from hil.service.api._left_files import left_file
@@ -18,6 +26,8 @@ from hil.service.api._problems import RefusedError, missing, refuse_elsewhere
 from hil.service.service import Service
 
 router = APIRouter(prefix="/recordings", tags=["recordings"])
+_Seconds = Annotated[float | None, Query(ge=-1e6, le=1e9, allow_inf_nan=False)]
+_Buckets = Annotated[int, Query(ge=10, le=4000)]
 _PIECE: dict[str, Any] = {
     "requestBody": {
         "required": True,
@@ -110,6 +120,60 @@ async def get_recording_file(recording: RunId, name: str, service: TheService, m
         raise missing("file", name)
     path = await service.recordings.file(found, name)
     return left_file(path, name, "application/octet-stream")
+
+
+@router.get("/{recording}/curves", name="get_recording_curves")
+async def get_recording_curves(
+    recording: RunId,
+    service: TheService,
+    me: Viewer,
+    channel: Annotated[list[ChannelName], Query(min_length=1, max_length=12)],
+    start_s: _Seconds = None,
+    end_s: _Seconds = None,
+    most: _Buckets = 600,
+) -> RecordingCurves:
+    """Channels of an uploaded recording as lowest and highest value in each of `most` buckets."""
+    del me
+    path = await _ready(service, recording)
+    found = await service.viewing.ask(
+        "recording_measured", path=path, channels=channel, start_s=start_s, end_s=end_s, most=most
+    )
+    return RecordingCurves(**found)
+
+
+@router.get("/{recording}/simulation", name="simulate_recording")
+async def simulate_recording(
+    recording: RunId,
+    service: TheService,
+    me: Engineer,
+    model: Annotated[FileName, Query()],
+    start_s: _Seconds = None,
+    end_s: _Seconds = None,
+    most: _Buckets = 600,
+) -> RecordingCurves:
+    """Outputs of a model driven by an uploaded recording's torque, as `hil simulate`, with their gaps."""
+    del me
+    chosen = service.models.path(model)
+    if chosen is None:
+        raise missing("model", model)
+    path = await _ready(service, recording)
+    found = await service.viewing.ask(
+        "recording_simulated",
+        path=path,
+        model=str(chosen.resolve()),
+        start_s=start_s,
+        end_s=end_s,
+        most=most,
+    )
+    return RecordingCurves(**found)
+
+
+async def _ready(service: Service, recording: int) -> str:
+    """Where the file of one is that can be read."""
+    found = _there(service, recording)
+    if found.state != "ready":
+        raise RefusedError(409, f"recording {recording} is {found.state}", fix="choose one that is ready")
+    return str((await service.recordings.file(found)).resolve())
 
 
 def _there(service: Service, recording: int) -> RecordingData:

@@ -110,6 +110,8 @@ LEAST = {
     ("GET", "/versions/{kind}/{name}"): "viewer",
     ("GET", "/versions/{kind}/{name}/{number}/text"): "viewer",
     ("GET", "/recordings"): "viewer",
+    ("GET", "/recordings/{recording}/curves"): "viewer",
+    ("GET", "/recordings/{recording}/simulation"): "engineer",
     ("POST", "/recordings"): "engineer",
     ("GET", "/recordings/{recording}"): "viewer",
     ("DELETE", "/recordings/{recording}"): "engineer",

@@ -49,4 +49,6 @@ export type Recording = Schemas["RecordingData"];
 export type FileCheck = Schemas["FileCheck"];
 export type Version = Schemas["VersionData"];
 export type BenchFile = Schemas["BenchFileData"];
+export type RecordingCurves = Schemas["RecordingCurves"];
+export type RecordingCurve = Schemas["RecordingCurve"];
 export type PlanMistake = Schemas["PlanMistake"];

@@ -11,6 +11,7 @@ import { t } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { Badge, Facts, Heading, Loaded, Moment, Scroll, Section } from "../../ui/parts.tsx";
+import { Curves } from "./curves.tsx";
 import { ColumnsField, GiveRecording } from "./give-recording.tsx";
 import { columnsFrom } from "./send-recording.ts";
 
@@ -58,7 +59,7 @@ export function RecordingView({ id }: { id: number }): JSX.Element {
 }
 
 function Found({ recording: one, onChanged }: { recording: Recording; onChanged: () => void }): JSX.Element {
-  const may = useMay(), isReady = one.state === "ready", channels = one.channels ?? [], notes = one.notes ?? [];
+  const may = useMay(), isReady = one.state === "ready", channels = one.channels ?? [], others = (useRecordings().data ?? []).filter((other) => other.id !== one.id && other.state === "ready"), notes = one.notes ?? [];
   const remove = async () => {
     if (!confirm(t("Remove the recording {name}? Studies of it stay.", { name: one.name }))) return;
     if (await attempt(async () => { await ask("DELETE", `/recordings/${one.id}`); return true; })) go(to.list("recordings"));
@@ -77,6 +78,7 @@ function Found({ recording: one, onChanged }: { recording: Recording; onChanged:
         {may("engineer") && !one.place && one.state !== "checking" ? <button type="button" onClick={() => void remove()}>{t("Remove the recording")}</button> : null}
       </div>
       {notes.length ? <Section title={t("What reading it assumed")} label="notes"><ul>{notes.map((note) => <li key={note}>{note}</li>)}</ul></Section> : null}
+      {isReady ? <Section title={t("Curves")} label="curves"><Curves recording={one} others={others} /></Section> : null}
       {channels.length ? <Section title={t("Channels")} label="channels"><Channels of={channels} /></Section> : null}
       {may("engineer") && !one.place && (isReady || one.state === "refused") ? <Section title={t("Which column is which channel")} label="columns"><ReadAnew recording={one} onChanged={onChanged} /></Section> : null}
     </>
