@@ -11,6 +11,7 @@ import pytest
 
 from hil.core.errors import BadInputError
 from hil.engine.bench.bench_file import shipped
+from hil.service.files.plan_checks import mistakes_of
 from hil.service.worker_pool.file_checking import file
 from test_plans import library_controllers
 from tests.hil.service.served import SHORT, RefusedError, Served, served
@@ -44,6 +45,23 @@ def test_what_follows_from_a_two_inertia_model_is_that_of_the_closed_form() -> N
     assert found["antiresonance of the motor speed"] == pytest.approx(antiresonance_hz, rel=1e-6)
     assert found["dead time"] == pytest.approx(8.0)
     assert found["inertia seen by the motor"] == pytest.approx(motor + vehicle / gear**2, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        (MODEL + '\n[[effects]]\nid = "backlash"\nhalf_gap_rad = -1\n', "half_gap_rad = -1"),
+        (MODEL + '\n[[effects]]\nid = "backlash"\n', "[[effects]]"),
+        (MODEL.replace("torque_delay = 0.008", "torque_delay = -1"), "torque_delay = -1"),
+        (MODEL.replace("[parameters]", "[parameters"), "[parameters"),
+    ],
+)
+def test_a_single_mistake_stands_at_its_line_too(text: str, line: str) -> None:
+    with pytest.raises(BadInputError) as refused:
+        file("model", "a", text, {}, "")
+    (mistake,) = mistakes_of(refused.value)
+    assert mistake.line is not None, refused.value
+    assert text.splitlines()[mistake.line - 1].startswith(line)
 
 
 def test_a_model_that_no_controller_can_be_designed_for_says_why() -> None:

@@ -11,8 +11,8 @@ from playwright import sync_api as playwright
 
 from hil.api_schemas.recording import RecordingWanted
 from hil.client import Client
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, heading, region, to
-from tests.hil.service.looks import refuse_hard_to_use
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
+from tests.hil.service.looks import expect_drawn, refuse_hard_to_use
 from tests.hil.service.recordings.test_given_recordings import excited_csv
 from tests.hil.service.served import Served, served
 
@@ -36,6 +36,11 @@ def test_a_recording_is_given_identified_from_and_removed(
     expect(heading(page, re.compile("drive-1-.csv ready"))).to_be_visible()
     expect(page.locator(".facts")).to_contain_text("samples10,000")
     expect(region(page, "Channels").locator("table")).to_contain_text("motor_speed_rad_srad/s")
+    curves = region(page, "Curves")
+    expect_drawn(curves.locator("figure.plot", has_text="motor speed"), "gain")
+    page.set_viewport_size({"width": 1280, "height": 900})
+    choice(page, "Model driven by its torque").select_option("three_inertia")
+    expect(curves).to_contain_text(re.compile("gap to the model [0-9]"), timeout=120_000)
     refuse_hard_to_use(page)
     page.get_by_role("link", name="Identify a model").click()
     expect(page.get_by_label("recording 1: drive-1-.csv")).to_be_checked()

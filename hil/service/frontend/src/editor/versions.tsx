@@ -31,7 +31,7 @@ export function Versions({ kind, name, textPath, editPath }: Options): JSX.Eleme
         <thead><tr><th scope="col" class="number">{t("version")}</th><th scope="col">{t("name")}</th><th scope="col">{t("given by")}</th><th scope="col">{t("given")}</th><td /></tr></thead>
         <tbody>{versions.map((one) => (
           <tr key={one.number}><td class="number">{one.number}</td><th scope="row">{one.name}</th><td>{one.given_by}</td><td><Moment at={one.given_at} /></td>
-            <td><button type="button" aria-pressed={shown === one.number} aria-label={t("Differences of version {number} from today's text", { number: one.number })} onClick={() => setShown(shown === one.number ? null : one.number)}>{t("Differences")}</button>{may("engineer") ? <> <a href={`${editPath}&version=${one.number}`} aria-label={t("Write on from version {number}", { number: one.number })}>{t("Write on from it")}</a></> : null}</td>
+            <td><span class="buttons"><button type="button" aria-pressed={shown === one.number} aria-label={t("Differences of version {number} from today's text", { number: one.number })} onClick={() => setShown(shown === one.number ? null : one.number)}>{t("Differences")}</button>{may("engineer") ? <a class="button" href={`${editPath}&version=${one.number}`} aria-label={t("Write on from version {number}", { number: one.number })}>{t("Write on")}</a> : null}</span></td>
           </tr>
         ))}</tbody>
       </table></Scroll>
