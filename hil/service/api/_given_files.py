@@ -1,4 +1,4 @@
-"""Files in TOML that people give, as every kind of them is listed, described and sent."""
+"""Files that are given, as every kind of them is listed, described and sent."""
 
 from __future__ import annotations
 
@@ -19,6 +19,13 @@ _TOML = "application/toml"
 #: Of a request that carries such a file.
 GIVEN: dict[str, Any] = {
     "requestBody": {"required": True, "content": {_TOML: {"schema": {"type": "string"}}}}
+}
+#: Of one that carries a piece of a file.
+PIECE: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
+    }
 }
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Body, Query, Request
 from fastapi.responses import FileResponse
@@ -21,6 +21,7 @@ from hil.api_schemas.recording import (
 )
 from hil.api_schemas.study import STUDY_OVER
 from hil.service.api._access import Engineer, TheService, Viewer
+from hil.service.api._given_files import PIECE
 from hil.service.api._left_files import left_file
 from hil.service.api._problems import RefusedError, missing, refuse_elsewhere
 from hil.service.service import Service
@@ -28,12 +29,6 @@ from hil.service.service import Service
 router = APIRouter(prefix="/recordings", tags=["recordings"])
 _Seconds = Annotated[float | None, Query(ge=-1e6, le=1e9, allow_inf_nan=False)]
 _Buckets = Annotated[int, Query(ge=10, le=4000)]
-_PIECE: dict[str, Any] = {
-    "requestBody": {
-        "required": True,
-        "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
-    }
-}
 
 
 @router.get("", name="list_recordings")
@@ -58,7 +53,7 @@ async def get_recording(recording: RunId, service: TheService, me: Viewer) -> Re
     return _there(service, recording)
 
 
-@router.put("/{recording}/content", name="send_recording", openapi_extra=_PIECE)
+@router.put("/{recording}/content", name="send_recording", openapi_extra=PIECE)
 async def send_recording(
     recording: RunId,
     request: Request,
