@@ -61,9 +61,10 @@ class RecordingData(Record):
     reason: str = Field("", description="why it is refused, and what to do")
     samples: int | None = None
     duration_s: float | None = None
-    channels: list[RecordedChannel] = Field([])
+    channel_count: int = 0
+    channels: list[RecordedChannel] = Field([], description="the first thousand; none in lists")
     plan: str = Field("", description="plan of the run that it is a recording of; '' of other tools' files")
-    notes: list[str] = Field([], description="what reading assumed, mended or found damaged")
+    notes: list[str] = Field([], description="what reading assumed, mended or found damaged; none in lists")
     used: str = Field("", description="file that studies read")
     files: list[str] = Field([])
 

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import time
 import urllib.parse
 from collections.abc import Callable, Sequence
 from pathlib import Path
+
+from pydantic import ValidationError
 
 from hil.api_schemas.agent import MOST_PIECE_BYTES, FileThere
 from hil.api_schemas.api import Me
@@ -59,7 +62,7 @@ class RecordingRequests(Requests):
         """
         with open_regular(path) as file:
             size = path.stat().st_size
-            one = self._begun(RecordingWanted(name=path.name, size=size, columns=list(columns)))
+            one = self._begun(_wanted(path, size, columns))
             whole, at = hashlib.sha256(), 0
             while piece := file.read(MOST_PIECE_BYTES):
                 whole.update(piece)
@@ -140,3 +143,19 @@ class RecordingRequests(Requests):
         if one.state == "refused":
             raise BadInputError(one.reason, where=f"recording {one.id}")
         return one
+
+
+def _wanted(path: Path, size: int, columns: Sequence[str]) -> RecordingWanted:
+    """What is asked for a file, under a name that the service takes.
+
+    Raises:
+        BadInputError: the file is empty or too large, or a column is none that the service takes.
+    """
+    name = re.sub(r"^[^A-Za-z0-9]+", "", re.sub(r"[^A-Za-z0-9_.-]+", "-", path.name))[-100:]
+    try:
+        return RecordingWanted(name=name or "recording", size=size, columns=list(columns))
+    except ValidationError as error:
+        first = error.errors()[0]
+        what = f"{'.'.join(str(part) for part in first['loc'])}: {first['msg']}"
+        fix = "give a file of 1 byte to 16 GB, and columns as 'CHANNEL=COLUMN'"
+        raise BadInputError(what, where=str(path), fix=fix) from error

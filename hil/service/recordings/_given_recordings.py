@@ -30,7 +30,7 @@ _ARRIVING = "arriving"
 _READ_WITHIN_S, _WITHIN_S = 300.0, 900.0
 #: After this long without a piece one that is arriving is given up.
 _GIVEN_UP_S = 24 * 3600.0
-_READ_FIELDS = ("samples", "duration_s", "channels", "plan", "notes", "used")
+_READ_FIELDS = ("samples", "duration_s", "channel_count", "channels", "plan", "notes", "used")
 
 logger = logging.getLogger(__name__)
 
@@ -53,8 +53,9 @@ class GivenRecordings:
         self._closing = False
 
     def all(self) -> list[RecordingData]:
-        """Newest first, also those of other services."""
-        return self._shared.with_others([self._shown(one) for one in self._records])
+        """Newest first, also those of other services; without what makes a long list of them heavy."""
+        found = self._shared.with_others([self._shown(one) for one in self._records])
+        return [one.model_copy(update={"channels": [], "notes": []}) for one in found]
 
     def get(self, number: int) -> RecordingData | None:
         """One of them."""

@@ -33,6 +33,7 @@ def recording(path: str, columns: list[str]) -> dict[str, Any]:
     return {
         "samples": found.samples,
         "duration_s": found.last_s - found.first_s,
+        "channel_count": len(found.channels),
         "channels": [{"name": name, "unit": units.get(name) or unit_of(name)} for name in names],
         "plan": run.plan if run is not None else "",
         "notes": [*found.damage, *found.notes][:_MOST_NOTES],

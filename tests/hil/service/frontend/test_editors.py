@@ -132,3 +132,19 @@ def test_steps_of_a_plan_are_completed(page: playwright.Page, there: Served) -> 
     expect(text).to_have_value("name: mine\nsteps:\n  - hold_speed: ")
     page.keyboard.type("{")
     expect(offers).to_contain_text("km/h")
+
+
+def test_a_plan_is_started_with_another_controller_and_the_same_values(
+    page: playwright.Page, there: Served
+) -> None:
+    to(page, there, "plans/short?bench=sim&value.torque_nm=150")
+    part = region(page, "With another controller")
+    expect(part.get_by_label("in the plan")).to_have_value("short")
+    part.get_by_label("Controller", exact=True).select_option("gain_stabilization")
+    part.get_by_label("as plan").fill("short_with_gain")
+    refuse_hard_to_use(page)
+    part.get_by_role("button", name="Make the plan").click()
+    expect(heading(page, re.compile("short_with_gain"))).to_be_visible()
+    expect(page.locator("input[name=torque_nm]")).to_have_value("150")
+    expect(region(page, "Versions").locator("tbody th").first).to_have_text("short_with_gain")
+    assert "gain_stabilization.toml" in there.get("/plans/short_with_gain/text").decode()

@@ -51,7 +51,10 @@ def test_a_recording_is_given_identified_and_removed(there: Served, tmp_path: Pa
     assert given.duration_s == pytest.approx(9.999)
     assert ("motor_speed_rad_s", "rad/s") in [(one.name, one.unit) for one in given.channels]
     assert shares[-1] == 1.0
-    assert client.recordings()[0] == client.recording(given.id) == given
+    assert client.recording(given.id) == given
+    listed = client.recordings()[0]
+    assert (listed.channel_count, listed.channels) == (3, [])  # a thousand channels of a thousand recordings
+    assert listed.model_copy(update={"channels": given.channels, "notes": given.notes}) == given
     client.download_of_recording(given.id, "drive.csv", tmp_path / "back.csv")
     assert (tmp_path / "back.csv").read_bytes() == (tmp_path / "drive.csv").read_bytes()
     asked = client.identify(IdentificationWanted(recordings=[given.id]))
@@ -126,6 +129,24 @@ def test_what_is_no_recording_is_refused_in_words(
     assert "internal error" not in refused.value.what
     assert str(there.data.resolve()) not in refused.value.what
     assert client.health().status == "ok"
+
+
+def test_a_name_that_the_service_would_not_take_and_an_empty_file(there: Served, tmp_path: Path) -> None:
+    client = Client(there.url)
+    given = client.give_recording(excited_csv(tmp_path / " Fahrt 3 (kalt).csv"))
+    assert given.name == "Fahrt-3-kalt-.csv"
+    curves = client.recording_curves(given.id, ["motor_speed_rad_s"], most=100)
+    assert [len(one.highest) for one in curves.curves] == [100]
+    simulated = client.simulate_recording(given.id, "three_inertia", most=100)
+    assert [one.channel for one in simulated.curves] == ["motor_speed_rad_s"]
+    with pytest.raises(RefusedError, match="there is no model 'none'"):
+        client.simulate_recording(given.id, "none")
+    client.remove_recording(given.id)
+    (tmp_path / "empty.csv").touch()
+    with pytest.raises(BadInputError, match="size"):
+        client.give_recording(tmp_path / "empty.csv")
+    with pytest.raises(BadInputError, match="columns"):
+        client.give_recording(excited_csv(tmp_path / "a.csv"), ["map.toml"])
 
 
 def test_other_kinds_and_too_much_are_refused_before_a_byte_is_sent(there: Served, tmp_path: Path) -> None:

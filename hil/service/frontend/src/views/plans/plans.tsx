@@ -8,9 +8,11 @@ import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
 import { Versions, versionPath } from "../../editor/versions.tsx";
 import { limitText } from "../../format.ts";
+import { t } from "../../i18n/text.ts";
 import { go, useQuery } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { Heading, Loaded, Scroll, Section } from "../../ui/parts.tsx";
+import { UseController } from "../design/use-controller.tsx";
 import { EditPlan, PlanEditor } from "./plan-editor.tsx";
 import { renamed, START } from "./plan-text.ts";
 import { valuesFrom } from "./start-values.ts";
@@ -80,7 +82,12 @@ function Found({ plan }: { plan: Plan }): JSX.Element {
           <Versions kind="plan" name={plan.name} textPath={textPath} editPath={`${to.plan(plan.name)}?write=on`} />
           {may("engineer") && !plan.built_in ? <div class="row"><button type="button" onClick={() => void remove()}>Remove the plan</button></div> : null}
         </div>
-        {may("operator") ? <div><Section title="Start it" label="start"><StartPlan plan={plan.name} from={valuesFrom(query)} /></Section></div> : null}
+        {may("operator") ? (
+          <div>
+            <Section title="Start it" label="start"><StartPlan plan={plan.name} from={valuesFrom(query)} /></Section>
+            {may("engineer") ? <Section title={t("With another controller")} label="controller"><p class="quiet">{t("A copy of the plan loads it; the copy is started with the same values.")}</p><UseController plan={plan.name} query={query.toString()} /></Section> : null}
+          </div>
+        ) : null}
       </div>
     </>
   );

@@ -22,7 +22,7 @@ export function Curves({ recording, others }: { recording: Recording; others: Re
   const stretch = [["start_s", from], ["end_s", until]].filter(([, text]) => text !== "" && Number.isFinite(Number(text))) as [string, string][];
   const query = (asked: [string, string][]) => new URLSearchParams([...asked, ...stretch]).toString();
   const mine = useData<RecordingCurves>(channels.length ? `/recordings/${recording.id}/curves?${query(channels.map((one) => ["channel", one]))}` : null);
-  const there = others.find((one) => String(one.id) === other), shared = channels.filter((name) => there?.channels?.some((one) => one.name === name));
+  const there = useData<Recording>(other ? `/recordings/${other}` : null).data, shared = channels.filter((name) => there?.channels?.some((one) => one.name === name));
   const theirs = useData<RecordingCurves>(shared.length ? `/recordings/${other}/curves?${query(shared.map((one) => ["channel", one]))}` : null);
   const simulated = useData<RecordingCurves>(model ? `/recordings/${recording.id}/simulation?${query([["model", model]])}` : null);
   const turn = (name: string, on: boolean) => setChannels(on ? [...channels, name].slice(-MOST) : channels.filter((one) => one !== name));

@@ -7,6 +7,7 @@ import type { Run, RunView as View } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
 import { figure } from "../../format.ts";
+import { t } from "../../i18n/text.ts";
 import { useLive } from "../../live.ts";
 import { Board } from "../../plot/board.tsx";
 import { rangeText } from "../../plot/range.ts";
@@ -89,7 +90,7 @@ function RunActions({ run }: { run: Run }): JSX.Element | null {
   return (
     <div class="row level">
       {may("operator") && OVER.includes(run.state) ? <button type="button" onClick={() => void again()}>Again</button> : null}
-      {may("operator") && OVER.includes(run.state) ? <a href={againWith(run)}>Again with other values</a> : null}
+      {may("operator") && OVER.includes(run.state) ? <a href={againWith(run)}>{t("Again with other values, bench or controller")}</a> : null}
       {may("operator") && waits ? <button type="button" onClick={() => void attempt(() => post(`/runs/${run.id}/abort`))}>Cancel</button> : null}
       {run.state === "waiting_approval" && may("engineer") ? <button type="button" class="main" onClick={() => void attempt(() => post(`/runs/${run.id}/approve`))}>Approve</button> : null}
       {recorded && may("engineer") ? <a href={`${to.list("diagnoses")}?runs=${run.id}`}>Diagnose</a> : null}
