@@ -8,6 +8,7 @@ import time
 import urllib.parse
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TypeVar
 
 from pydantic import ValidationError
 
@@ -24,6 +25,7 @@ from hil.client._requests import WITHIN_S, RefusedError, Requests, part
 from hil.core.errors import BadInputError
 from hil.core.files import open_regular
 
+W = TypeVar("W", RecordingWanted, RecordingColumns)
 _LOOK_S = 0.2
 _AGAIN_S = 1.0
 _GONE_S = 60.0
@@ -80,7 +82,7 @@ class RecordingRequests(Requests):
         Raises:
             BadInputError: the service cannot read it so.
         """
-        wanted = RecordingColumns(columns=list(columns))
+        wanted = _valid(lambda: RecordingColumns(columns=list(columns)), f"recording {recording}")
         return self._read_there(self._one(RecordingData, "POST", f"/recordings/{recording}/check", wanted))
 
     def recording_curves(self, recording: int, channels: Sequence[str], most: int = 600) -> RecordingCurves:
@@ -152,10 +154,16 @@ def _wanted(path: Path, size: int, columns: Sequence[str]) -> RecordingWanted:
         BadInputError: the file is empty or too large, or a column is none that the service takes.
     """
     name = re.sub(r"^[^A-Za-z0-9]+", "", re.sub(r"[^A-Za-z0-9_.-]+", "-", path.name))[-100:]
+    return _valid(
+        lambda: RecordingWanted(name=name or "recording", size=size, columns=list(columns)), str(path)
+    )
+
+
+def _valid(made: Callable[[], W], where: str) -> W:
     try:
-        return RecordingWanted(name=name or "recording", size=size, columns=list(columns))
+        return made()
     except ValidationError as error:
         first = error.errors()[0]
         what = f"{'.'.join(str(part) for part in first['loc'])}: {first['msg']}"
         fix = "give a file of 1 byte to 16 GB, and columns as 'CHANNEL=COLUMN'"
-        raise BadInputError(what, where=str(path), fix=fix) from error
+        raise BadInputError(what, where=where, fix=fix) from error

@@ -8,11 +8,11 @@ import { attempt, useData } from "../../data.ts";
 import { TextEditor } from "../../editor/text-editor.tsx";
 import { useCheck } from "../../editor/use-check.ts";
 import { ValuesForm } from "../../editor/values-form.tsx";
-import { figure } from "../../format.ts";
+import { figure, wordsOf } from "../../format.ts";
 import { t } from "../../i18n/text.ts";
 import { go, useQuery } from "../../router.ts";
 import { NameField } from "../../ui/name-field.tsx";
-import { inWords, Section } from "../../ui/parts.tsx";
+import { Section } from "../../ui/parts.tsx";
 import { kindOf, nextName, type GivenKind } from "./kinds.ts";
 
 interface Options {
@@ -24,7 +24,7 @@ interface Options {
 export function FileEditor({ kind, text: given, basedOn = "" }: Options): JSX.Element {
   const of = kindOf(kind), taken = (useData<{ name: string }[]>(of.path).data ?? []).map((one) => one.name);
   const [text, setText] = useState(given), [chosen, setName] = useState<string | null>(null), [model, setModel] = useState("");
-  const name = chosen ?? (basedOn ? nextName(basedOn, taken) : ""), isName = /^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$/.test(name);
+  const inText = kind === "bench" ? benchName(text) : null, name = inText ?? chosen ?? (basedOn ? nextName(basedOn, taken) : ""), isName = /^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$/.test(name);
   const checked = useCheck<FileCheck>("/file-checks", { kind, name: isName ? name : "unnamed", text, ...(model ? { model } : {}) });
   const check = checked.text === text ? checked.check : null;
   const keep = async () => {
@@ -35,7 +35,7 @@ export function FileEditor({ kind, text: given, basedOn = "" }: Options): JSX.El
   return (
     <div class="columns">
       <div>
-        <NameField label={t("Name")} value={name} onChange={setName} />
+        {inText === null ? <NameField label={t("Name")} value={name} onChange={setName} /> : null}
         <TextEditor label={of.label} kind="toml" schema={kind} text={text} onText={setText} checked={checked} keep={{ name: isName ? t("Keep as {name}", { name }) : t("Keep it"), missing, do: () => void keep() }} />
       </div>
       <div>
@@ -49,6 +49,9 @@ export function FileEditor({ kind, text: given, basedOn = "" }: Options): JSX.El
   );
 }
 
+// A bench says its name itself, as a plan does.
+const benchName = (text: string): string => /^name\s*=\s*"([^"]*)"/m.exec(text)?.[1] ?? "";
+
 function ChooseModel({ value, onChange }: { value: string; onChange: (model: string) => void }): JSX.Element {
   const models = useData<Model[]>("/models").data ?? [];
   useEffect(() => { if (!value && models[0]) onChange(models[0].name); }, [models.length]);
@@ -59,7 +62,7 @@ function Figures({ of }: { of: FileCheck }): JSX.Element {
   return (
     <>
       <table aria-label={t("What follows from it")}><tbody>
-        {(of.figures ?? []).map((one, at) => <tr key={at}><th scope="row">{inWords(one.name)}</th><td class={one.text ? "" : "number"}>{one.text ? inWords(one.text) : figure(one.value, one.unit)}</td></tr>)}
+        {(of.figures ?? []).map((one, at) => <tr key={at}><th scope="row">{wordsOf(one.name)}</th><td class={one.text ? "" : "number"}>{one.text || figure(one.value, one.unit)}</td></tr>)}
       </tbody></table>
       {(of.notes ?? []).map((note) => <p class="quiet" key={note}>{note}</p>)}
     </>

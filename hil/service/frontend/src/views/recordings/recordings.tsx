@@ -41,7 +41,7 @@ function List({ all }: { all: Recording[] }): JSX.Element {
       <tbody>{all.map((one) => (
         <tr key={one.id}>
           <td class="number"><a href={to.recording(one.id)}>{one.id}</a></td><th scope="row"><a href={to.recording(one.id)}>{one.name}</a></th>
-          <td><State of={one} /></td><td>{kindOf(one)}</td><td class="number">{bytes(one.size)}</td><td class="number">{one.duration_s == null ? "–" : duration(one.duration_s)}</td>
+          <td class="shared"><State of={one} /></td><td>{kindOf(one)}</td><td class="number">{bytes(one.size)}</td><td class="number">{one.duration_s == null ? "–" : duration(one.duration_s)}</td>
           <td class="number">{one.channel_count || "–"}</td><td>{one.given_by}</td><td><Moment at={one.given_at} /></td>
         </tr>
       ))}</tbody>
