@@ -60,7 +60,7 @@ class Health(_Data):
         0, description="runs with files that are not in the store; 0 without a store"
     )
     results_not_stored: int = Field(
-        0, description="finished studies and campaigns with files that are not in the store"
+        0, description="finished studies, campaigns and given recordings with files that are not in the store"
     )
     store_problem: str = Field("", description="why files do not reach the store; '' if they do")
     stop_url: str = Field(
