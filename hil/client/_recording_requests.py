@@ -110,7 +110,7 @@ class RecordingRequests(Requests):
         self._download(f"/recordings/{recording}/files/{part(name)}", path)
 
     def _begun(self, wanted: RecordingWanted) -> RecordingData:
-        """One that was begun earlier, if it is the same as far as its name and size tell."""
+        """One that an earlier try started, if it is the same as far as its name and size tell."""
         for one in self.recordings():
             same = (one.name, one.size, one.columns) == (wanted.name, wanted.size, wanted.columns)
             if same and one.state == "arriving" and not one.place and one.given_by == self._me():

@@ -216,7 +216,7 @@ class Service:
     def drop_bench(self, name: str) -> bool:
         """Serve a bench that somebody gave no longer; false while runs wait or are under way there."""
         open_ones = self.runs.all(bench=name, states=_OPEN, before=_LAST, most=1)
-        if open_ones or not self.queue.drop(name):  # one that is just begun is nowhere but in the database
+        if open_ones or not self.queue.drop(name):  # one that just begins is nowhere but in the database
             return False
         del self._own[name]
         self.served_benches.remove(name)
