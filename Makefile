@@ -95,10 +95,11 @@ PARTS ?=
 nightly: setup browser page
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.nightly $(PARTS)
 
-# Debian's Chromium, in which the page of the service is tested; as root on Debian it is installed.
+# Debian's Chromium and Firefox, in which the page of the service is tested; as root on Debian they are installed.
 browser:
-	@command -v chromium >/dev/null || if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
-	  apt-get -qq update; DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends chromium >/dev/null || true; fi
+	@command -v chromium >/dev/null && command -v firefox-esr >/dev/null || if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	  apt-get -qq update; DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends chromium firefox-esr >/dev/null || true; fi
+	@command -v firefox-esr || echo "There is no firefox-esr: the page is tested in one browser."
 	@command -v chromium || echo "There is no chromium: the page of the service is not tested."
 
 # The closed loop of tuning on a bench in virtual time that hides backlash and dead time from the model.

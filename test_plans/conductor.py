@@ -88,8 +88,11 @@ class Conductor(Protocol):
         """Leave everything as it is."""
         ...
 
-    def prompt(self, text: str, timeout_s: float = PROMPT_TIMEOUT_S) -> None:
-        """Show `text` to the operator and wait for the answer; none within `timeout_s` ends the run."""
+    def prompt(self, text: str, timeout_s: float = PROMPT_TIMEOUT_S, picture: str = "") -> None:
+        """Show `text` to the operator and wait for the answer; none within `timeout_s` ends the run.
+
+        `picture` names a file beside the plan that is shown with it where pictures can be; '' for none.
+        """
         ...
 
     def ramp_down(self, duration_s: float) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from hil.engine.ipc.ipc_messages import EmergencyAsked
+from hil.engine.ipc.ipc_messages import EmergencyAsked, Question
 
 
 class Answering:
@@ -16,7 +16,7 @@ class Answering:
         self.waiting: list[str | EmergencyAsked] = []
         self._answer, self.then = answer, then
 
-    def tell(self, text: str) -> None:
+    def tell(self, text: str, question: Question | None = None) -> None:
         self.told.append(text)
         self.waiting.append(self._answer)
         self.then(text)
@@ -29,7 +29,7 @@ class Answering:
 class Silent(Answering):
     """Reads, and types only what a test puts into `waiting`."""
 
-    def tell(self, text: str) -> None:
+    def tell(self, text: str, question: Question | None = None) -> None:
         self.told.append(text)
         self.then(text)
 
@@ -41,8 +41,8 @@ class Slow(Silent):
         super().__init__()
         self._after_s, self._due_s = after_s, float("inf")
 
-    def tell(self, text: str) -> None:
-        super().tell(text)
+    def tell(self, text: str, question: Question | None = None) -> None:
+        super().tell(text, question)
         self._due_s = time.monotonic() + self._after_s
 
     def typed(self) -> list[str | EmergencyAsked]:

@@ -67,6 +67,7 @@ class DrivenBench:
         if running is not None:
             facts.share = None if running.share is None else min(max(running.share, 0.0), 1.0)
             facts.doing, facts.message = _short(running.doing), _short(running.message)
+            facts.prompt = running.prompt
         elif self.left:
             facts.doing = "the run is being ended, because its agent was killed"
         elif self.kept is not None:

@@ -7,7 +7,16 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from hil.api_schemas.api import BenchName, ForecastData, Number, PersonName, Problem, RunData, RunId
+from hil.api_schemas.api import (
+    BenchName,
+    ForecastData,
+    Number,
+    PersonName,
+    Problem,
+    PromptData,
+    RunData,
+    RunId,
+)
 from hil.core.errors import StopWay
 
 AgentId = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
@@ -86,6 +95,7 @@ class AgentBench(_Data):
     share: Annotated[Number, Field(ge=0, le=1)] | None = None
     doing: Text = ""
     message: Text = ""
+    prompt: PromptData | None = None
 
 
 class AgentReport(_Data):

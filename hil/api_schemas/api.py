@@ -60,7 +60,7 @@ class Health(_Data):
         0, description="runs with files that are not in the store; 0 without a store"
     )
     results_not_stored: int = Field(
-        0, description="finished studies and campaigns with files that are not in the store"
+        0, description="finished studies, campaigns and given recordings with files that are not in the store"
     )
     store_problem: str = Field("", description="why files do not reach the store; '' if they do")
     stop_url: str = Field(
@@ -113,6 +113,14 @@ class ReservationData(_Data):
     admitted: list[RunId] = Field([], description="runs of others that may start meanwhile")
 
 
+class PromptData(_Data):
+    """A question of a run to its operator."""
+
+    text: str
+    answer_by: datetime.datetime = Field(description="without an answer by then the run ends")
+    picture: str = Field("", description="name of a picture of the service; '' for none")
+
+
 class RunData(_Data):
     """A run: queued, active or finished."""
 
@@ -132,6 +140,7 @@ class RunData(_Data):
     share: float | None = Field(None, description="progress, 0 to 1, while it is running")
     doing: str = Field("", description="present activity, while it is running")
     message: str = Field("", description="last message to the operator, while it is running")
+    prompt: PromptData | None = Field(None, description="question that waits for an answer")
     exit_code: int | None = Field(None, description="exit code, as of `hil run`")
     verdict: RunVerdict | None = None
     safe_state: Literal["confirmed", "not_confirmed", "not_needed"] | None = None

@@ -13,9 +13,12 @@ import io
 import os
 import select
 import sys
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from hil.core.errors.wording import printable
+
+if TYPE_CHECKING:
+    from hil.engine.ipc.ipc_messages import Question
 
 #: The reader has gone: no one is left to complain to, and the command's outcome is its own.
 _READER_GONE = (errno.EPIPE, errno.EIO, errno.EBADF)
@@ -119,9 +122,10 @@ class StandardTerminal:
         self._descriptor = sys.stdin.fileno()
         self._begun = b""
 
-    def tell(self, text: str) -> None:
-        """Show a text."""
-        print(f"\n{text}", file=sys.stderr)
+    def tell(self, text: str, question: Question | None = None) -> None:
+        """Show a text; a picture by its name."""
+        picture = f"\nPicture: {question.picture}" if question is not None and question.picture else ""
+        print(f"\n{text}{picture}", file=sys.stderr)
 
     def typed(self) -> list[str]:
         """Lines that were typed since the last call; an end of file is none."""

@@ -6,11 +6,20 @@ from hil.client._agent_requests import AgentRequests
 from hil.client._bench_requests import BenchRequests
 from hil.client._design_requests import DesignRequests
 from hil.client._people_requests import PeopleRequests
+from hil.client._recording_requests import RecordingRequests
 from hil.client._run_requests import RunRequests
 from hil.client._study_requests import StudyRequests
 
 
-class Client(BenchRequests, RunRequests, DesignRequests, StudyRequests, AgentRequests, PeopleRequests):
+class Client(
+    BenchRequests,
+    RunRequests,
+    DesignRequests,
+    RecordingRequests,
+    StudyRequests,
+    AgentRequests,
+    PeopleRequests,
+):
     """A bench service.
 
     Every method raises RefusedError if the service refuses, and BenchError if it cannot be reached or does

@@ -1,4 +1,4 @@
-"""Plans, models and controllers, and what is designed with them."""
+"""Plans, models, controllers and pictures, and what is designed with them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hil.api_schemas.design import (
     PlanCopyWanted,
 )
 from hil.api_schemas.upload import KeptApart
-from hil.client._requests import Requests, part
+from hil.client._requests import WITHIN_S, Requests, part
 
 _FORECAST_WITHIN_S = 300.0
 
@@ -51,6 +51,11 @@ class DesignRequests(Requests):
     def give_controller(self, name: str, text: str) -> ControllerData:
         """Give a controller file, so that plans can load it."""
         return self._one(ControllerData, "PUT", f"/controllers/{part(name)}", text)
+
+    def give_picture(self, name: str, content: bytes) -> None:
+        """Give a picture, so that prompts of plans can show it."""
+        with self._opened("PUT", f"/pictures/{part(name)}", content, WITHIN_S):
+            pass
 
     def draft(self, wanted: DraftWanted) -> DraftData:
         """Loops, margins and steps of a controller on a model."""

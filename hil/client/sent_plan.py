@@ -8,8 +8,8 @@ import re
 from pathlib import Path
 
 from hil.client import Client, RefusedError
-from hil.core.files import read_text
-from test_plans import Plan, named_controllers
+from hil.core.files import read_bytes, read_text
+from test_plans import MOST_PICTURE_BYTES, Plan, named_controllers, pictures_of
 from test_plans.yaml_document import read_yaml
 
 _TAKEN = 409
@@ -17,13 +17,13 @@ _LONGEST = 40
 
 
 def give_plan(client: Client, plan: Plan) -> str:
-    """Give a service a plan and the controllers that lie here; its name there.
+    """Give a service a plan with the controllers and pictures that lie here; its name there.
 
     The plan says there what each controller is called there; in all else it is the same.
 
     Raises:
-        RefusedError: the service refuses the plan, or a controller.
-        BadInputError: a controller cannot be read.
+        RefusedError: the service refuses the plan, a controller or a picture.
+        BadInputError: a controller or a picture cannot be read.
     """
     document = read_yaml(plan.text, str(plan.source))
     changes: dict[tuple[int, int], str] = {}
@@ -31,6 +31,8 @@ def give_plan(client: Client, plan: Plan) -> str:
         file = plan.source.parent / name
         if file.is_file():  # else it is built in, there as here
             changes[document.spans[place]] = json.dumps(f"{_given(client, file)}.toml")
+    for picture in pictures_of(plan):
+        client.give_picture(picture, read_bytes(plan.source.parent / picture, MOST_PICTURE_BYTES))
     text = plan.text
     for start, end in sorted(changes, reverse=True):
         text = text[:start] + changes[start, end] + text[end:]

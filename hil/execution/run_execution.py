@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+import datetime
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, Protocol
 
 from hil.api_schemas.agent import TakenRun
-from hil.api_schemas.api import RunData
+from hil.api_schemas.api import PromptData, RunData
 from hil.core.errors import HilError
 from hil.core.files import make_directory, write_atomically
 from hil.core.result import RunResult
 from hil.engine import RECORDING
-from hil.engine.ipc.ipc_messages import EmergencyAsked, OperatorText, Progressed, Refused, RunAsked
+from hil.engine.ipc.ipc_messages import EmergencyAsked, OperatorText, Progressed, Question, Refused, RunAsked
 from hil.execution.benches import Bench
 from hil.execution.run_process import RunProcess, result_in
 
@@ -43,7 +44,7 @@ class Steered(Protocol):
 
 @dataclass
 class RunningRun:
-    """A run under way. `message`: the last text for its operator."""
+    """A run under way. `message`: the last text for its operator; `prompt`: a question that is open."""
 
     data: RunData
     folder: Path
@@ -51,6 +52,7 @@ class RunningRun:
     share: float | None = None
     doing: str = "beginning"
     message: str = ""
+    prompt: PromptData | None = None
 
 
 @dataclass(frozen=True)
@@ -107,6 +109,7 @@ class RunExecution(RunningRun):
                 self.doing = message.text
             elif isinstance(message, OperatorText):
                 self.message = message.text
+                self.prompt = _asked(message.question) or self.prompt
             elif isinstance(message, Refused):
                 refused = message.error.as_error()
             changed()
@@ -121,7 +124,14 @@ class RunExecution(RunningRun):
         return RunEnd("interrupted" if closing() else "ended", code, result, reason, dut)
 
     def _asks_no_more(self) -> None:
-        self.message = ""
+        self.message, self.prompt = "", None
+
+
+def _asked(question: Question | None) -> PromptData | None:
+    if question is None:
+        return None
+    until = datetime.datetime.now(datetime.UTC) + datetime.timedelta(seconds=question.answer_within_s)
+    return PromptData(text=question.text, answer_by=until, picture=question.picture)
 
 
 def end_of_left(folder: Path, who: str) -> RunEnd:

@@ -45,6 +45,7 @@ class _Place:
     looked_s: float = -1e9
     held_by: str = ""  # another service of the same database
     held_s: float = -1e9
+    dropped: bool = False  # taken out of service
     unsure: int | None = None  # taken while the database went away: perhaps so, and certainly not started
 
 
@@ -91,6 +92,27 @@ class Queue:
         """Where the files of a run are."""
         return folder_of(self._folder, run)
 
+    def add(self, bench: Bench) -> None:
+        """Drive one more bench.
+
+        Raises:
+            BenchError: another service drives it.
+        """
+        place = _Place(bench)
+        self._refuse_held(place)
+        self._places[bench.name] = place
+
+    def drop(self, bench: str) -> bool:
+        """Begin nothing more on a bench; false while a run is under way there.
+
+        It is still known: who looks at all benches may just be looking at it.
+        """
+        place = self._places[bench]
+        if place.running is not None or place.left or place.unsure is not None:
+            return False
+        place.dropped = True
+        return True
+
     def wake(self) -> None:
         """Look at all benches now."""
         self._wake.set()
@@ -123,7 +145,7 @@ class Queue:
         """Begin runs as benches become free, until `close`."""
         while not self._closing:
             with contextlib.suppress(DatabaseAwayError):  # nothing is started until it answers
-                for place in self._places.values():
+                for place in [one for one in self._places.values() if not one.dropped]:
                     await self._look(place)
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._wake.wait(), _LOOK_S)

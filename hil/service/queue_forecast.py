@@ -46,7 +46,7 @@ class QueueForecast:
         return next(present, "")
 
     def show_reservations(self) -> None:
-        """Have benches shown anew of which a reservation has begun or is over."""
+        """Have benches shown anew of which a reservation begins or is over."""
         for bench in list(self._service.benches):
             present = self.reserved_by(bench)
             if self._shown.get(bench, "") != present:

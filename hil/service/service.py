@@ -14,8 +14,9 @@ from pathlib import Path
 
 from sqlalchemy import Engine
 
-from hil.api_schemas.api import OVER, BenchData, BenchState, ForecastData, Me, RunData
+from hil.api_schemas.api import OVER, BenchData, BenchState, ForecastData, Me, RunData, RunState
 from hil.api_schemas.campaign import CampaignData
+from hil.api_schemas.recording import RecordingData
 from hil.api_schemas.study import StudyData
 from hil.execution.background import apart
 from hil.execution.benches import Bench
@@ -29,11 +30,13 @@ from hil.service.agents.run_upload import RunUploads
 from hil.service.archive import Archive, Keeper, Rounds
 from hil.service.audit import DeferredAudit, problem_of
 from hil.service.durations import Durations
-from hil.service.files.catalogues import controller_catalogue, model_catalogue
+from hil.service.files.catalogues import bench_catalogue, controller_catalogue, model_catalogue
 from hil.service.files.legacy_import import LegacyImport
+from hil.service.files.pictures import Pictures
 from hil.service.files.plans import Plans
+from hil.service.files.served_benches import ServedBenches
 from hil.service.files.upload_reader import UploadReader
-from hil.service.files.uploads import Uploads
+from hil.service.files.uploads import NameTakenError, Uploads
 from hil.service.jobs.campaigns import Campaigns, Places, Simulating
 from hil.service.jobs.shared_results import SharedResults
 from hil.service.jobs.studies import Studies
@@ -41,6 +44,7 @@ from hil.service.live.live_hub import LiveHub
 from hil.service.owners import OwnersKnown
 from hil.service.queue import Queue
 from hil.service.queue_forecast import QueueForecast
+from hil.service.recordings import GivenRecordings, Room
 from hil.service.sign_in import SignIn
 from hil.service.stop_post import StopPost
 from hil.service.stops import Stops
@@ -62,6 +66,7 @@ from hil.service.store import (
     RunList,
     RunStore,
     TokenStore,
+    VersionStore,
 )
 from hil.service.turns import Turns
 from hil.service.worker_pool import WorkerPool
@@ -71,6 +76,7 @@ _VIEW_S = 600.0
 _ASK_S = 1.0  # a database that is away
 _MOST_SHOWN = 100
 _LAST = 2**31 - 1
+_OPEN: tuple[RunState, ...] = ("queued", "waiting_approval", "running")
 
 logger = logging.getLogger(__name__)
 
@@ -95,6 +101,7 @@ class Service:
         local_days: how long files that the archive has stay in the folder.
         stop_post: takes emergency stops whatever becomes of this.
         sign_in: signs people in by OpenID Connect; None: there are tokens only.
+        room: for recordings that people give.
 
     Raises:
         BenchError: another service drives one of the benches, or the database is away.
@@ -111,7 +118,11 @@ class Service:
         local_days: float = 30.0,
         stop_post: StopPost | None = None,
         sign_in: SignIn | None = None,
+        room: Room | None = None,
     ) -> None:
+        self.served_benches = ServedBenches(folder / "benches", folder.resolve())
+        given_benches = self.served_benches.there(lambda name: _refused(name, benches, held))
+        benches = {**benches, **given_benches}
         self._own, self._folder = benches, folder
         self.database = Presence(engine)
         self.runs, self.run_list, self.leases = RunStore(engine), RunList(engine), LeaseStore(engine)
@@ -126,7 +137,12 @@ class Service:
         given = GivenStore(engine)
         models = Uploads(given, "model", folder / "given/models", ".toml")
         controllers = Uploads(given, "controller", folder / "given/plans", ".toml")
-        self.plans = Plans(Uploads(given, "plan", folder / "given/plans", ".yaml"), controllers)
+        self.pictures = Pictures(given, folder / "given/plans")
+        self.plans = Plans(
+            Uploads(given, "plan", folder / "given/plans", ".yaml"), controllers, self.pictures
+        )
+        self.bench_files = bench_catalogue(Uploads(given, "bench", folder / "given/benches", ".toml"))
+        self.versions = VersionStore(engine)
         self.models, self.controllers = model_catalogue(models), controller_catalogue(controllers)
         earlier = LegacyImport(folder, given, self.log, self.plans, self.controllers, self.models)
         self.kept_apart = earlier.take_in()
@@ -135,13 +151,15 @@ class Service:
         studies = SharedResults(results, "study", StudyData, archive, elsewhere / "studies")
         campaigns = SharedResults(results, "campaign", CampaignData, archive, elsewhere / "campaigns")
         self.studies = Studies(folder / "studies", studies)
+        recordings = SharedResults(results, "recording", RecordingData, archive, elsewhere / "recordings")
+        self.recordings = GivenRecordings(folder / "recordings", recordings, room)
         # One worker reads recordings, so that a design in the other does not wait.
         self.worker_pool, self.drawing = WorkerPool(niceness=10), WorkerPool(niceness=0)
         # And one looks at runs: an hour that no one followed takes it ten seconds, once.
         self.viewing = WorkerPool(niceness=5, within_s=_VIEW_S)
         self.upload_reader = UploadReader(self.plans)
         self.campaigns = Campaigns(folder / "campaigns", simulating, self.worker_pool, campaigns)
-        self.sharing = Rounds(self._share, "files of studies and campaigns")
+        self.sharing = Rounds(self._share, "files of studies, campaigns and recordings")
         self._held = held
         self.live_hub = LiveHub(lambda: self.benches, self.running, folder / "overviews")
         runs_folder = folder / "runs"
@@ -164,7 +182,7 @@ class Service:
         self.deferred_audit = DeferredAudit(self.log)
 
     async def _share(self) -> str:
-        problems = await self.studies.share(), await self.campaigns.share()
+        problems = await self.studies.share(), await self.campaigns.share(), await self.recordings.share()
         return "; ".join(filter(None, problems))
 
     @property
@@ -176,9 +194,39 @@ class Service:
         """A bench of the service's own; None if it is an agent's."""
         return self._own.get(bench)
 
+    def serve_bench(self, name: str, text: str) -> None:
+        """Serve a simulated bench that somebody gave.
+
+        Raises:
+            BadInputError: it cannot be served, or there is a bench of its name.
+            BenchError: another service drives one of its name.
+        """
+        if name in self.benches:
+            raise NameTakenError("there is a bench of this name", where=name, fix="give it another name")
+        bench = self.served_benches.add(name, text, self.models.paths())
+        try:
+            self.queue.add(bench)
+        except BaseException:
+            self.served_benches.remove(name)
+            raise
+        self._own[name] = bench
+        self.tell_stop_post()
+        self.changed(name)
+
+    def drop_bench(self, name: str) -> bool:
+        """Serve a bench that somebody gave no longer; false while runs wait or are under way there."""
+        open_ones = self.runs.all(bench=name, states=_OPEN, before=_LAST, most=1)
+        if open_ones or not self.queue.drop(name):  # one that just begins is nowhere but in the database
+            return False
+        del self._own[name]
+        self.served_benches.remove(name)
+        self.tell_stop_post()
+        self._held.give_back(name)
+        return True
+
     def running(self, bench: str) -> RunningRun | None:
         """The run under way on a bench."""
-        return self.queue.running(bench) if bench in self._own else self.agents.benches[bench].running
+        return self.queue.running(bench) if self._is_own(bench) else self.agents.benches[bench].running
 
     def running_run(self, run: int) -> RunningRun | None:
         """A run by its number, if it is under way."""
@@ -186,7 +234,11 @@ class Service:
 
     def state(self, bench: str) -> tuple[BenchState, str]:
         """What a bench does, and why it may not be driven."""
-        return self.queue.state(bench) if bench in self._own else self.agents.benches[bench].state()
+        return self.queue.state(bench) if self._is_own(bench) else self.agents.benches[bench].state()
+
+    def _is_own(self, bench: str) -> bool:
+        """Whether it is the service's own, or was until a moment ago."""
+        return bench in self._own or bench not in self.agents.benches
 
     def wake(self, bench: str) -> None:
         """Look now what waits for a bench."""
@@ -243,7 +295,7 @@ class Service:
         if running is not None:
             away = f"; {self.database.away}" if self.database.away else ""
             doing = {"share": running.share, "doing": running.doing + away, "message": running.message}
-            return run.model_copy(update=doing)
+            return run.model_copy(update={**doing, "prompt": running.prompt})
         return run
 
     def files_of(self, run: int) -> list[str]:
@@ -319,3 +371,8 @@ class Service:
             if not self.audit_problem:
                 await apart(partial(problem_of, self.log, self._folder))
             self._held.give_back()
+
+
+def _refused(name: str, benches: Mapping[str, Bench], held: BenchStore) -> str:
+    """Why a given bench of a name is not served here; '' if it is."""
+    return "the service has a bench of this name" if name in benches else held.hold(name)

@@ -27,6 +27,7 @@ from hil.service.api import Guarding, Rates, StopAddress, application, bounded
 from hil.service.archive import Archive
 from hil.service.jobs.campaigns import Simulating
 from hil.service.notices import NoticeSettings, NoticeWatch, Post
+from hil.service.recordings import Room
 from hil.service.service import Service
 from hil.service.sign_in import SignIn, SignInSettings
 from hil.service.stop_post import StopPost
@@ -63,6 +64,7 @@ class ServeRequest:
         stop_port: of the stop post; None takes the one after `port`, or a free one if that is 0.
         stop_url: where others reach the stop post, if that is not this host at `stop_port`.
         trusted_proxies: addresses of proxies before the service, which say for whom and how they ask.
+        room: for recordings that people give.
         rate: requests that an address may send a second, in the long run.
         for_s: ends by itself after this many seconds.
         notices: who gets which; None: they are not sent.
@@ -82,6 +84,7 @@ class ServeRequest:
     store: str = ""
     local_days: float = 30.0
     hosts: Sequence[str] = ()
+    room: Room = field(default_factory=Room)
     rate: float = 40.0
     for_s: float = math.inf
     notices: NoticeSettings | None = None
@@ -121,6 +124,7 @@ def serve(request: ServeRequest) -> None:
                     request.local_days,
                     post,
                     sign_in,
+                    request.room,
                 )
                 asyncio.run(_served(request, service, listening, post))
         finally:
@@ -176,6 +180,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         watch = NoticeWatch(service, Post(request.folder, request.notices))
         besides.append(asyncio.create_task(going_on(lambda: in_turns(watch.work()))))
     service.campaigns.go_on()
+    service.recordings.go_on()
     besides.append(asyncio.create_task(going_on(lambda: in_turns(service.sharing.work()))))
     if (keeper := service.keeper) is not None:
         besides.append(asyncio.create_task(going_on(lambda: in_turns(keeper.work()))))
@@ -198,6 +203,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         server.should_exit = True
         await service.studies.close()
         await service.campaigns.close()
+        await service.recordings.close()
         service.worker_pool.close()
         service.drawing.close()
         service.viewing.close()

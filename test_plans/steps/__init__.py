@@ -7,7 +7,7 @@ from test_plans.steps.chirp import Chirp
 from test_plans.steps.coast import Coast
 from test_plans.steps.hold_speed import HoldSpeed
 from test_plans.steps.multisine import Multisine
-from test_plans.steps.operator_prompt import OperatorPrompt
+from test_plans.steps.operator_prompt import PICTURE, OperatorPrompt
 from test_plans.steps.ramp import Ramp
 from test_plans.steps.ramp_down import RampDown
 from test_plans.steps.repeat import LARGEST_COUNT, Repeat
@@ -39,6 +39,7 @@ STEPS: Registry[Step] = Registry("step", "hil.steps", Step, [(step.kind, step) f
 
 __all__ = [
     "LARGEST_COUNT",
+    "PICTURE",
     "SAMPLE_TIME_S",
     "STEPS",
     "Chirp",

@@ -19,6 +19,7 @@ from unittest.mock import patch
 
 from hil.core.recording._growing_file import GrowingFile
 from hil.engine import RunRequest, load_bench, run_plan
+from hil.engine.ipc.ipc_messages import Question
 from test_plans import load_plan
 from tests.benches_for_tests import SIM
 from tests.faults.expected import FaultRow, row
@@ -95,7 +96,7 @@ class Operator:
         self._stage = stage
         self._asked_s: float | None = None
 
-    def tell(self, text: str) -> None:
+    def tell(self, text: str, question: Question | None = None) -> None:
         if "Press Enter" in text:
             self._asked_s = self._stage.now_s
 

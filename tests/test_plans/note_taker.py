@@ -39,8 +39,8 @@ class NoteTaker:
     def wait(self, duration_s: float) -> None:
         self.calls.append(("wait", duration_s))
 
-    def prompt(self, text: str, timeout_s: float = PROMPT_TIMEOUT_S) -> None:
-        self.calls.append(("prompt", text))
+    def prompt(self, text: str, timeout_s: float = PROMPT_TIMEOUT_S, picture: str = "") -> None:
+        self.calls.append(("prompt", text, picture) if picture else ("prompt", text))
 
     def ramp_down(self, duration_s: float) -> None:
         self.calls.append(("ramp_down", duration_s))

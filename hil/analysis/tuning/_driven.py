@@ -112,7 +112,7 @@ class _Walk:
     def wait(self, duration_s: float) -> None:
         """Nothing to remember."""
 
-    def prompt(self, text: str, timeout_s: float = PROMPT_TIMEOUT_S) -> None:
+    def prompt(self, text: str, timeout_s: float = PROMPT_TIMEOUT_S, picture: str = "") -> None:
         """Nothing to remember."""
 
     def ramp_down(self, duration_s: float) -> None:

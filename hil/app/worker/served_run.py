@@ -22,7 +22,7 @@ from hil.engine.process.hardware_process import ASKED_WITHIN_S, LAST_WORDS_S
 
 if TYPE_CHECKING:
     from hil.app.feedback import Show
-    from hil.engine.ipc.ipc_messages import EmergencyAsked, RunAsked
+    from hil.engine.ipc.ipc_messages import EmergencyAsked, Question, RunAsked
     from hil.engine.ipc.ipc_pipe import IpcPipe
 
 LOG_FILE = "log.txt"
@@ -51,11 +51,11 @@ class _Service(LoggedFeedback):
                     return message
         return None
 
-    def tell(self, text: str) -> None:
-        """Show the operators a text."""
+    def tell(self, text: str, question: Question | None = None) -> None:
+        """Show the operators a text; with `question` an answer is awaited."""
         from hil.engine.ipc.ipc_messages import OperatorText
 
-        self._pipe.send(OperatorText(text=text))
+        self._pipe.send(OperatorText(text=text, question=question))
 
     def typed(self) -> list[str | EmergencyAsked]:
         """What operators asked for since the last call; that the service has gone ends the run."""

@@ -30,6 +30,7 @@ def execute(options: Serve) -> int:
     for_s = options.for_s
     # The extra 'service' brings what they need.
     from hil.service.notices import read_settings
+    from hil.service.recordings import Room
     from hil.service.serving import ServeRequest, make_token, serve
     from hil.service.sign_in import read_settings as read_sign_in
 
@@ -70,6 +71,7 @@ def execute(options: Serve) -> int:
         database=options.database,
         store=options.store,
         local_days=options.keep_local,
+        room=Room(most_bytes=1e9 * options.recordings_gb),
         hosts=allow_host,
         rate=options.rate,
         for_s=math.inf if for_s is None else for_s,

@@ -253,6 +253,9 @@ class Serve:
             help="second place for files of runs: s3://bucket/prefix, or a folder on another disk",
         ),
     ] = ""
+    recordings_gb: Annotated[
+        float, typer.Option(min=0, metavar="GB", help="most that recordings given to the service may take")
+    ] = 100.0
     keep_local: Annotated[
         float,
         typer.Option(min=0, metavar="DAYS", help="days to keep files in DIR after they are in the store"),

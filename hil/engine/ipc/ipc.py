@@ -17,7 +17,7 @@ from hil.core.recording import Recording
 from hil.core.result import RunResult
 from hil.core.runtime.other_process import OtherProcess
 from hil.engine.bench.bench_tables import BenchFile
-from hil.engine.ipc.ipc_messages import EmergencyAsked
+from hil.engine.ipc.ipc_messages import EmergencyAsked, Question
 from hil.engine.stop.stopping import StopRequest
 from test_plans import Plan, Work
 
@@ -66,8 +66,8 @@ class Analysed:
 class Terminal(Protocol):
     """The operator's terminal. Nothing here waits."""
 
-    def tell(self, text: str) -> None:
-        """Show a text."""
+    def tell(self, text: str, question: Question | None = None) -> None:
+        """Show a text; with `question` an answer is awaited."""
         ...
 
     def typed(self) -> Sequence[str | EmergencyAsked]:

@@ -139,11 +139,20 @@ class Progressed(_Data):
     text: str
 
 
+class Question(_Data):
+    """What the operator is asked; `picture`: a file beside the plan, '' for none."""
+
+    text: str
+    answer_within_s: float
+    picture: str = ""
+
+
 class OperatorText(_Data):
-    """A text for the operator."""
+    """A text for the operator; with `question` an answer is awaited."""
 
     kind: Literal["message"] = "message"
     text: str
+    question: Question | None = None
 
 
 class Logged(_Data):

@@ -167,7 +167,7 @@ class PredictionConductor(BenchConductor):
         each_segment: TakesSegment | None = None,
     ) -> None:
         super().__init__(
-            cast(Bench, bench), cast(Recorder, recorder), out, lambda text, timeout_s: "not asked"
+            cast(Bench, bench), cast(Recorder, recorder), out, lambda text, timeout_s, picture: "not asked"
         )
         self._rmcu, self._loop, self._dyno = bench.rmcu, bench.loop, bench.dyno
         self._rows_of = recorder

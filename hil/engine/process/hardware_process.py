@@ -27,6 +27,7 @@ from hil.engine.ipc.ipc_messages import (
     Message,
     OperatorText,
     Progressed,
+    Question,
     Refused,
     RunAsked,
     StopAsked,
@@ -145,9 +146,9 @@ class _Command:
         if not self._pipe.crowded:
             self._pipe.send(Progressed(share=share, text=text))
 
-    def tell(self, text: str) -> None:
-        """Show a text to the operator."""
-        self._pipe.send(OperatorText(text=text))
+    def tell(self, text: str, question: Question | None = None) -> None:
+        """Show a text to the operator; with `question` an answer is awaited."""
+        self._pipe.send(OperatorText(text=text, question=question))
 
     def typed(self) -> list[str | EmergencyAsked]:
         """What the operator has typed, and others asked for, since the last call."""

@@ -178,7 +178,7 @@ class _Supervisor:
         elif isinstance(message, Progressed):
             self._request.progress(message.share, message.text)
         elif isinstance(message, OperatorText) and self._request.terminal is not None:
-            self._request.terminal.tell(message.text)
+            self._request.terminal.tell(message.text, message.question)
         elif isinstance(message, Logged):
             _log(message)
         elif isinstance(message, Concluded):

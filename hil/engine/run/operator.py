@@ -8,7 +8,7 @@ from collections.abc import Callable
 from drivers import BusLoop
 from hil.core.errors import EmergencyStopError, InterruptError
 from hil.engine.ipc.ipc import Terminal
-from hil.engine.ipc.ipc_messages import EmergencyAsked
+from hil.engine.ipc.ipc_messages import EmergencyAsked, Question
 
 LOOK_S = 0.02  # how often it is looked whether a line was typed
 _VIRTUAL_TICK_S = 0.01  # what passes at once while no one has to be awaited
@@ -121,7 +121,7 @@ class Operator:
             self._refuse_when_stopped()
         return True
 
-    def confirm(self, text: str, timeout_s: float) -> str:
+    def confirm(self, text: str, timeout_s: float, picture: str = "") -> str:
         """Have a prompt confirmed; says by whom or by what.
 
         Raises:
@@ -134,9 +134,12 @@ class Operator:
             return "no operator: a simulated bench continues"
         self.look()  # a line that was typed before is no answer
         self._answer = None
-        self._terminal.tell(f"{text}\nPress Enter to continue, q and Enter to end the run.")
+        how = "Press Enter to continue, q and Enter to end the run."
+        question = Question(text=text, answer_within_s=timeout_s, picture=picture)
+        self._terminal.tell(f"{text}\n{how}", question)
         if not self.wait_for(lambda: self._answer is not None, timeout_s):
-            raise InterruptError(f"no answer to '{text}' within {timeout_s:g} s", where="operator prompt")
+            what = f"no answer to '{text}' within {timeout_s:g} s"
+            raise InterruptError(what, where="operator prompt")
         self.take_pause()  # at a prompt the run is held already
         return f"confirmed by the operator: {self._answer}" if self._answer else "confirmed by the operator"
 

@@ -210,9 +210,9 @@ class Rehearsal:
     def wait(self, duration_s: float) -> None:
         """Nothing to compare."""
 
-    def prompt(self, text: str, timeout_s: float = PROMPT_TIMEOUT_S) -> None:
+    def prompt(self, text: str, timeout_s: float = PROMPT_TIMEOUT_S, picture: str = "") -> None:
         """Remember what the operator will be asked."""
-        del timeout_s
+        del timeout_s, picture
         self.prompts.append(text)
 
     def ramp_down(self, duration_s: float) -> None:

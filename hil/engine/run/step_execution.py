@@ -47,7 +47,7 @@ class BenchConductor:
         bench: Bench,
         recorder: Recorder,
         out: Path,
-        ask: Callable[[str, float], str],
+        ask: Callable[[str, float, str], str],
         analyse: Analyse = analysed_here,
         noted: Periodic | None = None,
         hold: Holding | None = None,
@@ -228,11 +228,11 @@ class BenchConductor:
         """Let time pass."""
         self._whole(lambda: self._bench.loop.run_for(duration_s, self._is_due))
 
-    def prompt(self, text: str, timeout_s: float = PROMPT_TIMEOUT_S) -> None:
+    def prompt(self, text: str, timeout_s: float = PROMPT_TIMEOUT_S, picture: str = "") -> None:
         """Ask the operator, with the RMCU off; the dynos hold."""
         self._switch_off()
         self._event("prompt", text)
-        self._event("prompt", self._ask(text, timeout_s))
+        self._event("prompt", self._ask(text, timeout_s, picture))
 
     def ramp_down(self, duration_s: float) -> None:
         """Torque off, then the dynos bring the wheels to standstill."""

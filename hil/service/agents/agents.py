@@ -279,7 +279,7 @@ class Agents:
                 self._restore(bench)
         if bench.running is not None and bench.running.data.id == report.running:
             bench.running.share, bench.running.doing = report.share, report.doing
-            bench.running.message = report.message
+            bench.running.message, bench.running.prompt = report.message, report.prompt
         if bench.stop_by and bench.stops() <= set(obeyed):
             bench.stop_by = ""
             with contextlib.suppress(DatabaseAwayError):

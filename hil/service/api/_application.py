@@ -10,6 +10,7 @@ from starlette.types import ASGIApp
 
 from hil.service.api import (
     _agents,
+    _bench_files,
     _benches,
     _campaigns,
     _comparisons,
@@ -21,7 +22,9 @@ from hil.service.api import (
     _notes,
     _page,
     _people,
+    _pictures,
     _plans,
+    _recordings,
     _reservations,
     _run_list,
     _run_views,
@@ -29,6 +32,7 @@ from hil.service.api import (
     _sign_in,
     _studies,
     _trends,
+    _versions,
 )
 from hil.service.api._guard import Guard, Guarding
 from hil.service.api._problems import RESPONSES, answer_problems
@@ -44,6 +48,7 @@ _PARTS = (
     _agents,
     _live,
     _plans,
+    _pictures,
     _runs,
     _notes,
     _run_views,
@@ -51,6 +56,9 @@ _PARTS = (
     _comparisons,
     _trends,
     _design,
+    _bench_files,
+    _versions,
+    _recordings,
     _studies,
     _campaigns,
     _layouts,

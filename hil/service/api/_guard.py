@@ -16,8 +16,8 @@ from hil.api_schemas.agent import MOST_PIECE_BYTES
 from hil.service.store import in_turns
 
 MOST_BODY_BYTES = 256_000
-#: What an agent sends of a run's file may be longer: MOST_PIECE_BYTES.
-_PIECE = re.compile(r"/api/v1/agents/[0-9a-f]{32}/runs/[0-9]+/files/[^/]+")
+#: A piece of a file may be longer, of a run's that an agent sends or of a recording: MOST_PIECE_BYTES.
+_PIECE = re.compile(r"/api/v1/(agents/[0-9a-f]{32}/runs/[0-9]+/files/[^/]+|recordings/[0-9]+/content)")
 _EMERGENCY = "/emergency-stop"
 _PLAIN_NAME = re.compile(r"[A-Za-z0-9.:-]{1,255}")
 _MOST_ADDRESSES = 10_000

@@ -21,9 +21,9 @@ from hil.service.sign_in import SignedIn, SignIn, SignInError, local_place
 from hil.service.stop_post import COOKIE
 
 router = APIRouter(tags=["people"])
-#: Of the browser that has begun to sign in: it comes along when the provider sends that back, so it is `Lax`.
-_BEGUN = "hil_sign_in"
-_BEGUN_S = 600
+#: Of the browser that is signing in: it comes along when the provider sends that back, so it is `Lax`.
+_UNDER_WAY = "hil_sign_in"
+_UNDER_WAY_S = 600
 _PATH = "/api/v1/sign-in"
 _ANSWERS: dict[int | str, dict[str, Any]] = {303: {"description": "to the provider, or back to the page"}}
 _Text = Annotated[str, Query(max_length=4000)]
@@ -38,17 +38,17 @@ async def sign_in(
     """Go to the provider to sign in; afterwards the page goes on at `place`."""
     found = _sign_in_of(service)
     try:
-        begun = await found.begin(local_place(place))
+        request = await found.begin(local_place(place))
     except SignInError as error:
         return _refused(error)
-    answer = RedirectResponse(begun.url, 303)
+    answer = RedirectResponse(request.url, 303)
     answer.set_cookie(
-        _BEGUN,
-        begun.browser,
+        _UNDER_WAY,
+        request.browser,
         httponly=True,
         samesite="lax",
         secure=_by_tls(found),
-        max_age=_BEGUN_S,
+        max_age=_UNDER_WAY_S,
         path=_PATH,
     )
     return answer
@@ -71,11 +71,11 @@ async def return_from_sign_in(
     """Where the provider sends people back to; opens a session of the page."""
     found = _sign_in_of(service)
     try:
-        person = await found.finish(state, request.cookies.get(_BEGUN, ""), code, error)
+        person = await found.finish(state, request.cookies.get(_UNDER_WAY, ""), code, error)
         answer = _opened(service, found, person)
     except SignInError as refused:
         answer = _refused(refused)
-    answer.delete_cookie(_BEGUN, path=_PATH, httponly=True, samesite="lax")
+    answer.delete_cookie(_UNDER_WAY, path=_PATH, httponly=True, samesite="lax")
     return answer
 
 

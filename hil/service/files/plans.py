@@ -11,6 +11,7 @@ from pathlib import Path
 from hil.api_schemas.api import PlanData
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
+from hil.service.files.pictures import Pictures
 from hil.service.files.uploads import NameTakenError, Uploads
 from hil.service.worker_pool.plan_reading import GivenPlan, data_of, given_plan, read_given
 from test_plans import Choices, Plan, library_plans, load_plan, plan_from_text
@@ -25,10 +26,11 @@ class Plans:
     Args:
         given: those that people gave.
         controllers: that people gave; plans find them beside themselves, in the same folder.
+        pictures: that people gave, for prompts of plans; in the same folder.
     """
 
-    def __init__(self, given: Uploads, controllers: Uploads) -> None:
-        self._given, self._controllers = given, controllers
+    def __init__(self, given: Uploads, controllers: Uploads, pictures: Pictures) -> None:
+        self._given, self._controllers, self._pictures = given, controllers, pictures
         self._built_in = {name: load_plan(name) for name in library_plans()}
         self._read: dict[str, GivenPlan] = {}
 
@@ -89,13 +91,21 @@ class Plans:
         return self._with_controllers() / f"{name}.yaml"
 
     def give(
-        self, name: str, text: str, by: str, *, replace: bool = True, read: GivenPlan | None = None
+        self,
+        name: str,
+        text: str,
+        by: str,
+        *,
+        replace: bool = True,
+        read: GivenPlan | None = None,
+        based_on: str = "",
     ) -> PlanData:
         """Keep a plan; one of the same name is replaced. Runs that are queued keep theirs.
 
         Args:
             by: who gives it.
             replace: whether one of the same name may be replaced.
+            based_on: name of the plan that it was made from.
             read: what it says, if another process has read it; None reads it here.
 
         Raises:
@@ -107,7 +117,7 @@ class Plans:
         before = self._given.text(name) if replace else None
         read = read or read_given(name, text, self._with_controllers())
         fix = "look at it, then give yours again, or under another name"
-        self._given.give(name, text, by, instead_of=before, fix=fix)
+        self._given.give(name, text, by, instead_of=before, based_on=based_on, fix=fix)
         self._remember(text, read)
         return read.data
 
@@ -129,7 +139,7 @@ class Plans:
         text = _renamed(text, copy)
         if self.text(copy) not in (None, text):
             raise NameTakenError("is the name of another plan", where=copy, fix="give the copy another name")
-        return self.give(copy, text, by, replace=False)
+        return self.give(copy, text, by, replace=False, based_on=name)
 
     def loading(self, file: str) -> list[str]:
         """Names of given plans that load a controller file."""
@@ -172,8 +182,9 @@ class Plans:
         return path
 
     def _with_controllers(self) -> Path:
-        """The folder, once every controller that a given plan may load lies there."""
+        """The folder, once every controller and picture that a given plan may name lies there."""
         self._controllers.paths()
+        self._pictures.bring()
         return self._given.folder
 
 

@@ -19,7 +19,7 @@ _LONGEST_NAME = 100
 
 
 @dataclass(frozen=True)
-class Begun:
+class SignInRequest:
     """Where the browser is sent, and the secret of its cookie."""
 
     url: str
@@ -49,7 +49,7 @@ class SignIn:
         self._tried = TriedOnes()
         self._turns = asyncio.Semaphore(_AT_ONCE)
 
-    async def begin(self, place: str) -> Begun:
+    async def begin(self, place: str) -> SignInRequest:
         """Begin one, which goes on at a place of the page.
 
         Raises:
@@ -57,17 +57,17 @@ class SignIn:
         """
         tried = self._tried.begin(place)
         async with self._turns:
-            return Begun(await apart(lambda: self._provider.authorization_url(tried)), tried.browser)
+            return SignInRequest(await apart(lambda: self._provider.authorization_url(tried)), tried.browser)
 
     async def finish(self, state: str, browser: str, code: str, refusal: str) -> SignedIn:
         """Who comes back from the provider with a code, or with why there is none.
 
         Raises:
-            SignInError: nobody that the provider vouches for.
+            SignInError: the provider vouches for no one.
         """
         tried = self._tried.take(state, browser)
         if refusal or not code:
-            raise SignInError("declined", "the provider signs nobody in")
+            raise SignInError("declined", "the provider signs no one in")
         async with self._turns:
             claims = await apart(lambda: self._provider.claims(code, tried))
         role, group = self.settings.role_of(_groups(claims, self.settings.groups_claim)) or (None, "")

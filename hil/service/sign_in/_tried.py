@@ -1,4 +1,4 @@
-"""Sign-ins that have begun: each can be finished once, soon, in the browser that began it."""
+"""Sign-ins under way: each can be finished once, soon, in the browser that began it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MOST = 10_000
 
 
 class SignInError(Exception):
-    """Nobody is signed in; the words are for the log and have no secret."""
+    """No one is signed in; the words are for the log and have no secret."""
 
     def __init__(self, reason: Reason, words: str) -> None:
         super().__init__(words)
@@ -30,7 +30,7 @@ def _random() -> str:
 
 @dataclass(frozen=True)
 class Tried:
-    """A sign-in that has begun.
+    """A sign-in under way.
 
     Attributes:
         state: comes back with the answer (RFC 6749, section 10.12).

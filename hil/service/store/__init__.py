@@ -19,6 +19,7 @@ from hil.service.store._run_list import RunList
 from hil.service.store._runs import NewRun, RunStore
 from hil.service.store._signed_in import PersonStore
 from hil.service.store._tables import Base
+from hil.service.store._versions import GivenVersion, VersionStore
 
 __all__ = [
     "SESSION_S",
@@ -32,6 +33,7 @@ __all__ = [
     "FileStore",
     "GivenStore",
     "GivenText",
+    "GivenVersion",
     "HandoverStore",
     "KeptFile",
     "LayoutStore",
@@ -49,6 +51,7 @@ __all__ = [
     "RunStore",
     "SharedJob",
     "TokenStore",
+    "VersionStore",
     "asked_apart",
     "in_turns",
     "open_database",

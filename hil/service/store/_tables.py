@@ -159,7 +159,7 @@ class NumberRow(Base):
 
 
 class GivenRow(Base):
-    """A plan, controller or model that somebody gave; `sha256` of its text, hexadecimal."""
+    """A plan, controller, model or bench file that somebody gave; `sha256` of its text, hexadecimal."""
 
     __tablename__ = "given"
 
@@ -170,6 +170,22 @@ class GivenRow(Base):
     given_by: Mapped[str] = mapped_column(String(100))
     given_at: Mapped[datetime.datetime] = mapped_column(_MOMENT)
     removed_at: Mapped[datetime.datetime | None] = mapped_column(_MOMENT)
+
+
+class VersionRow(Base):
+    """A text that was given, kept when another takes its place; what was made of it is of its family."""
+
+    __tablename__ = "given_versions"
+    __table_args__ = (Index("given_versions_by_name", "kind", "name"),)
+
+    kind: Mapped[str] = mapped_column(String(12), primary_key=True)
+    family: Mapped[str] = mapped_column(String(64), primary_key=True)
+    number: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    name: Mapped[str] = mapped_column(String(64))
+    sha256: Mapped[str] = mapped_column(String(64))
+    text: Mapped[str] = mapped_column(Text)
+    given_by: Mapped[str] = mapped_column(String(100))
+    given_at: Mapped[datetime.datetime] = mapped_column(_MOMENT)
 
 
 class TokenRow(Base):

@@ -11,15 +11,16 @@ from hil.app.schemas import SCHEMAS
 from hil.core.controller import controller_from_toml
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable
+from hil.core.files import is_file
 from hil.core.files.toml_file import parse_toml
 from hil.core.model import model_from_dict
 from hil.execution.data_folder import files_of
-from test_plans import Plan, plan_from_text
+from test_plans import Plan, pictures_of, plan_from_text
 
 
 @dataclass(frozen=True)
 class GivenPlan:
-    """A given plan: what is shown of it, and names of the files that it loads from beside itself."""
+    """A given plan: what is shown of it, and names of the files beside it that it loads or shows."""
 
     data: PlanData
     files: tuple[str, ...]
@@ -40,6 +41,13 @@ def read_given(name: str, text: str, folder: Path) -> GivenPlan:
                 fix="a plan on the service can only load controllers of the service, by name",
             )
     plan = plan_from_text(text, where, folder, to_execute=True)
+    for picture in pictures_of(plan):
+        if not is_file(folder / picture):
+            raise BadInputError(
+                f"shows the picture '{picture}', which the service does not have",
+                where=where,
+                fix="give the picture to the service first",
+            )
     if plan.name != name:
         raise BadInputError(
             f"the name in the plan is '{plan.name}'", where=where, fix="upload it under that name"
@@ -51,7 +59,9 @@ def given_plan(plan: Plan, folder: Path) -> GivenPlan:
     """What a given plan says; `folder` has the controllers that it may load."""
     beside = folder.resolve()
     files = (file for file in files_of(plan) if file.resolve().parent == beside)
-    return GivenPlan(data_of(plan, built_in=False), tuple(sorted({file.name for file in files})))
+    return GivenPlan(
+        data_of(plan, built_in=False), tuple(sorted({file.name for file in files}.union(pictures_of(plan))))
+    )
 
 
 def data_of(plan: Plan, *, built_in: bool) -> PlanData:

@@ -62,17 +62,29 @@ def service(_database: None, tmp_path_factory: pytest.TempPathFactory) -> Iterat
 
 
 @pytest.fixture
-def page(there: Served) -> Iterator[playwright.Page]:
+def browser() -> Iterator[playwright.Browser]:
     with playwright.sync_playwright() as started:
         browser = started.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
-        page = browser.new_page(viewport={"width": 1280, "height": 900})
-        troubles: list[str] = []
-        page.on("pageerror", lambda error: troubles.append(str(error)))
-        page.on("console", lambda line: troubles.append(_trouble(line)) if line.type == "error" else None)
-        page.on("request", lambda request: _refuse_elsewhere(request.url, there.url, troubles))
-        page.set_default_timeout(60_000)
-        yield page
+        yield browser
         browser.close()
+
+
+@pytest.fixture
+def locale() -> str:
+    """The language that the browser prefers; tests of others say theirs as a parameter."""
+    return "en-US"
+
+
+@pytest.fixture
+def page(there: Served, browser: playwright.Browser, locale: str) -> Iterator[playwright.Page]:
+    page = browser.new_page(viewport={"width": 1280, "height": 900}, locale=locale)
+    troubles: list[str] = []
+    page.on("pageerror", lambda error: troubles.append(str(error)))
+    page.on("console", lambda line: troubles.append(_trouble(line)) if line.type == "error" else None)
+    page.on("request", lambda request: _refuse_elsewhere(request.url, there.url, troubles))
+    page.set_default_timeout(60_000)
+    yield page
+    page.close()
     assert [one for one in troubles if "401 (Unauthorized)" not in one] == []  # asking who one is
 
 

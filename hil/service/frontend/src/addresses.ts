@@ -1,22 +1,26 @@
 // Every view has an address: what it says, and how it is written.
 
+import { t } from "./i18n/text.ts";
+
 export type Place =
-  | { view: "benches" | "runs" | "compare" | "trends" | "plans" | "models" | "controllers" | "design" | "identifications" | "diagnoses" | "campaigns" | "audit" | "settings" }
+  | { view: "benches" | "runs" | "compare" | "trends" | "plans" | "models" | "controllers" | "bench-files" | "design" | "recordings" | "identifications" | "diagnoses" | "campaigns" | "audit" | "settings" }
   | { view: "bench" | "panel"; bench: string }
+  | { view: "wall"; bench: string | null } // null: all benches
   | { view: "run"; run: number }
-  | { view: "plan" | "model" | "controller"; name: string }
-  | { view: "identification" | "diagnosis" | "campaign"; id: number }
+  | { view: "plan" | "model" | "controller" | "bench-file"; name: string }
+  | { view: "recording" | "identification" | "diagnosis" | "campaign"; id: number }
   | { view: "missing"; path: string };
 
-const LISTS = ["benches", "runs", "compare", "trends", "plans", "models", "controllers", "design", "identifications", "diagnoses", "campaigns", "audit", "settings"] as const;
-const NAMED = { plans: "plan", models: "model", controllers: "controller" } as const;
-const NUMBERED = { identifications: "identification", diagnoses: "diagnosis", campaigns: "campaign" } as const;
+const LISTS = ["benches", "runs", "compare", "trends", "plans", "models", "controllers", "bench-files", "design", "recordings", "identifications", "diagnoses", "campaigns", "audit", "settings"] as const;
+const NAMED = { plans: "plan", models: "model", controllers: "controller", "bench-files": "bench-file" } as const;
+const NUMBERED = { recordings: "recording", identifications: "identification", diagnoses: "diagnosis", campaigns: "campaign" } as const;
 
 export function placeOf(path: string): Place {
   const missing: Place = { view: "missing", path };
   const [head = "", name, more, ...rest] = partsOf(path);
   if (rest.length) return missing;
   if (head === "") return { view: "benches" };
+  if (head === "wall") return more === undefined ? { view: "wall", bench: name ?? null } : missing;
   const list = LISTS.find((one) => one === head);
   if (list === undefined) return missing;
   if (name === undefined) return { view: list };
@@ -57,10 +61,13 @@ export const to = {
   list: (view: (typeof LISTS)[number]): string => `/${view}`,
   bench: (bench: string): string => `/benches/${name(bench)}`,
   panel: (bench: string): string => `/benches/${name(bench)}/panel`,
+  wall: (bench?: string): string => (bench === undefined ? "/wall" : `/wall/${name(bench)}`),
   run: (run: number): string => `/runs/${run}`,
   plan: (plan: string): string => `/plans/${name(plan)}`,
   model: (model: string): string => `/models/${name(model)}`,
   controller: (controller: string): string => `/controllers/${name(controller)}`,
+  benchFile: (file: string): string => `/bench-files/${name(file)}`,
+  recording: (id: number): string => `/recordings/${id}`,
   identification: (id: number): string => `/identifications/${id}`,
   diagnosis: (id: number): string => `/diagnoses/${id}`,
   campaign: (id: number): string => `/campaigns/${id}`,
@@ -68,22 +75,25 @@ export const to = {
 };
 
 const TITLES: Record<(typeof LISTS)[number], string> = {
-  benches: "Benches", runs: "Runs", compare: "Compare runs", trends: "Trends", plans: "Plans", models: "Models", controllers: "Controllers",
-  design: "Design a controller", identifications: "Identifications", diagnoses: "Diagnoses", campaigns: "Campaigns", audit: "Audit log", settings: "Settings",
+  benches: t("Benches"), runs: t("Runs"), compare: t("Compare runs"), trends: t("Trends"), plans: t("Plans"), models: t("Models"), controllers: t("Controllers"), "bench-files": t("Bench files"),
+  design: t("Design a controller"), recordings: t("Recordings"), identifications: t("Identifications"), diagnoses: t("Diagnoses"), campaigns: t("Campaigns"), audit: t("Audit log"), settings: t("Settings"),
 };
 
 export function titleOf(place: Place): string {
   switch (place.view) {
-    case "bench": return `Bench ${place.bench}`;
-    case "panel": return `Operator panel of ${place.bench}`;
-    case "run": return `Run ${place.run}`;
-    case "plan": return `Plan ${place.name}`;
-    case "model": return `Model ${place.name}`;
-    case "controller": return `Controller ${place.name}`;
-    case "identification": return `Identification ${place.id}`;
-    case "diagnosis": return `Diagnosis ${place.id}`;
-    case "campaign": return `Campaign ${place.id}`;
-    case "missing": return "No such page";
+    case "bench": return t("Bench {bench}", { bench: place.bench });
+    case "panel": return t("Operator panel of {bench}", { bench: place.bench });
+    case "wall": return place.bench === null ? t("All benches") : t("Bench {bench}", { bench: place.bench });
+    case "run": return t("Run {run}", { run: place.run });
+    case "plan": return t("Plan {name}", { name: place.name });
+    case "model": return t("Model {name}", { name: place.name });
+    case "controller": return t("Controller {name}", { name: place.name });
+    case "bench-file": return t("Bench file {name}", { name: place.name });
+    case "recording": return t("Recording {number}", { number: place.id });
+    case "identification": return t("Identification {number}", { number: place.id });
+    case "diagnosis": return t("Diagnosis {number}", { number: place.id });
+    case "campaign": return t("Campaign {number}", { number: place.id });
+    case "missing": return t("No such page");
     default: return TITLES[place.view];
   }
 }

@@ -5,6 +5,8 @@ import { useEffect } from "preact/hooks";
 import { findStopPost, Refused } from "./api/client.ts";
 import { titleOf, to, type Place } from "./addresses.ts";
 import { refusal } from "./data.ts";
+import { English } from "./i18n/english.tsx";
+import { t } from "./i18n/text.ts";
 import { usePlace, useTitle } from "./router.ts";
 import { session } from "./session.ts";
 import { MENU } from "./shell/commands.ts";
@@ -12,6 +14,7 @@ import { Palette, paletteOpen } from "./shell/palette.tsx";
 import { SignIn, signOut } from "./shell/sign-in.tsx";
 import { benchInSight, StopButton } from "./shell/stop.tsx";
 import { useStore } from "./store.ts";
+import { kindInWords } from "./ui/kinds.ts";
 import { View } from "./views/view.tsx";
 
 const STOP_POST_MS = 5000;
@@ -19,7 +22,7 @@ const STOP_POST_MS = 5000;
 export function App(): JSX.Element {
   const place = usePlace();
   const who = useStore(session);
-  useTitle(who.state === "out" ? "Sign in" : titleOf(place));
+  useTitle(who.state === "out" ? t("Sign in") : titleOf(place));
   useEffect(() => {
     const look = () => void findStopPost().catch(() => {});
     look();
@@ -27,24 +30,25 @@ export function App(): JSX.Element {
     return () => clearInterval(timer);
   }, []);
   useEffect(() => {
-    if (!("bench" in place) && place.view !== "run") benchInSight.value = "";
+    if ((!("bench" in place) || place.view === "wall") && place.view !== "run") benchInSight.value = "";
     refusal.value = null;
   }, [place]);
+  if (place.view === "wall" && who.state === "in") return <main id="main"><View place={place} /></main>;
   return (
     <>
-      <a class="skip" href="#main" onClick={(event) => { event.preventDefault(); document.getElementById("main")?.focus(); }}>Skip to the content</a>
+      <a class="skip" href="#main" onClick={(event) => { event.preventDefault(); document.getElementById("main")?.focus(); }}>{t("Skip to the content")}</a>
       <header class="top">
         <div class="bar">
-          <a class="home" href={to.list("benches")}>Bench service</a>
-          {who.state === "in" ? <button type="button" class="find" onClick={() => { paletteOpen.value = true; }}>Find <kbd>Ctrl K</kbd></button> : null}
-          {who.state === "in" && who.me.tokens ? <span class="who">{`${who.me.name}, ${who.me.role}`} <button type="button" class="plain" onClick={() => void signOut()}>Sign out</button></span> : null}
+          <a class="home" href={to.list("benches")}>{t("Bench service")}</a>
+          {who.state === "in" ? <button type="button" class="find" onClick={() => { paletteOpen.value = true; }}>{t("Find")} <kbd>Ctrl K</kbd></button> : null}
+          {who.state === "in" && who.me.tokens ? <span class="who">{`${who.me.name}, ${kindInWords(who.me.role)}`} <button type="button" class="plain" onClick={() => void signOut()}>{t("Sign out")}</button></span> : null}
           <StopButton />
         </div>
         {who.state === "in" ? <Menu place={place} /> : null}
       </header>
       <main id="main" tabIndex={-1}>
         <Refusal />
-        {who.state === "in" ? <View place={place} /> : who.state === "out" ? <SignIn /> : <p class="quiet">Asking the service …</p>}
+        {who.state === "in" ? <View place={place} /> : who.state === "out" ? <SignIn /> : <p class="quiet">{t("Asking the service …")}</p>}
       </main>
       <Palette />
     </>
@@ -52,11 +56,11 @@ export function App(): JSX.Element {
 }
 
 function Menu({ place }: { place: Place }): JSX.Element {
-  const of = { bench: "benches", panel: "benches", run: "runs", plan: "plans", model: "models", controller: "controllers", identification: "identifications", diagnosis: "diagnoses", campaign: "campaigns" } as Record<string, string>;
+  const of = { bench: "benches", panel: "benches", run: "runs", plan: "plans", model: "models", controller: "controllers", "bench-file": "benches", "bench-files": "benches", recording: "recordings", identification: "identifications", diagnosis: "diagnoses", campaign: "campaigns" } as Record<string, string>;
   const list = of[place.view] ?? place.view;
   useEffect(() => document.querySelector(".menu [aria-current]")?.scrollIntoView({ block: "nearest", inline: "nearest" }), [list]); // of a narrow screen
   return (
-    <nav class="menu" aria-label="Pages">
+    <nav class="menu" aria-label={t("Pages")}>
       {MENU.map(([view, name]) => <a key={view} href={to.list(view)} aria-current={view === list ? "page" : undefined}>{name}</a>)}
     </nav>
   );
@@ -66,5 +70,5 @@ function Refusal(): JSX.Element | null {
   const error = useStore(refusal);
   if (!error) return null;
   const fix = error instanceof Refused ? error.fix : "";
-  return <p class="alarm" role="alert">{fix ? `${error.message}\n${fix}` : error.message}</p>;
+  return <p class="alarm" role="alert"><English>{fix ? `${error.message}\n${fix}` : error.message}</English></p>;
 }

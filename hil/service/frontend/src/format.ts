@@ -1,6 +1,8 @@
-// Numbers and moments as people of the browser's language write them.
+// Numbers and moments as people of the page's language write them, and names of channels in it.
 
-const LOCALE = typeof navigator === "undefined" ? "en" : navigator.language;
+import { LOCALE } from "./i18n/language.ts";
+import { t } from "./i18n/text.ts";
+
 const formats = new Map<string, Intl.NumberFormat>();
 
 function formatOf(options: Intl.NumberFormatOptions): Intl.NumberFormat {
@@ -23,6 +25,12 @@ export function figure(value: number | null | undefined, unit = ""): string {
 export const fixed = (value: number, digits: number): string =>
   formatOf({ minimumFractionDigits: digits, maximumFractionDigits: digits }).format(value);
 
+// With so many digits, and no zeros behind them.
+export function significant(value: number, digits: number): string {
+  const size = Math.abs(value), text = size > 0 && (size < 1e-6 || size >= 1e21) ? { notation: "scientific" as const } : {};
+  return formatOf({ ...text, maximumSignificantDigits: digits, useGrouping: false }).format(value).replace("-", "−");
+}
+
 // As many as tell neighbouring ticks apart: 2.5 has one, 0.25 two.
 export function digitsOf(step: number): number {
   let digits = 0;
@@ -37,14 +45,27 @@ export const whole = (value: number): string => formatOf({ maximumFractionDigits
 
 export const joined = (text: string, unit: string): string => (unit && unit !== "1" ? `${text}\u00a0${unit}` : text);
 
+// As disks and files are given: 1 MB is a million.
+export function bytes(count: number): string {
+  const [unit, size] = count >= 1e9 ? ["GB", 1e9] : count >= 1e6 ? ["MB", 1e6] : count >= 1e3 ? ["kB", 1e3] : ["B", 1] as const;
+  return joined(fixed(count / size, size === 1 || count / size >= 100 ? 0 : 1), unit);
+}
+
 export function duration(seconds: number): string {
   if (seconds < 60) return joined(fixed(seconds, seconds < 10 ? 1 : 0), "s");
   const minutes = Math.floor(seconds / 60);
-  if (minutes < 60) return `${minutes} min ${Math.round(seconds - 60 * minutes)} s`;
-  return `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
+  if (minutes < 60) return t("{minutes} min {seconds} s", { minutes, seconds: Math.floor(seconds - 60 * minutes) });
+  return t("{hours} h {minutes} min", { hours: Math.floor(minutes / 60), minutes: minutes % 60 });
 }
 
+// As a guess is given: to the second.
+export const roughly = (seconds: number): string => (seconds < 60 ? joined(whole(seconds), "s") : duration(seconds));
+
 const moments = new Intl.DateTimeFormat(LOCALE, { dateStyle: "medium", timeStyle: "short" });
+
+const times = new Intl.DateTimeFormat(LOCALE, { timeStyle: "medium" });
+
+export const clockTime = (ms: number): string => times.format(new Date(ms));
 
 export const moment = (iso: string): string => moments.format(new Date(iso));
 
@@ -55,11 +76,23 @@ export const dayText = (day: string): string => days.format(new Date(`${day}T12:
 
 const UNITS: Record<string, string> = { nm: "N m", rad_s: "rad/s", m_s: "m/s", s: "s", rad: "rad", degc: "°C", v: "V", a: "A", w: "W", hz: "Hz" };
 
+const CHANNELS: Record<string, string> = {
+  motor_speed: t("motor speed"), wheel_speed: t("wheel speed"), wheel_speed_left: t("wheel speed left"), wheel_speed_right: t("wheel speed right"), vehicle_speed: t("vehicle speed"),
+  motor_torque: t("motor torque"), motor_torque_ref: t("motor torque ref"), shaft_torque: t("shaft torque"), shaft_torque_left: t("shaft torque left"), shaft_torque_right: t("shaft torque right"),
+  driving_torque_ref: t("driving torque ref"), driving_torque_est: t("driving torque est"), dyno_torque_left: t("dyno torque left"), dyno_torque_right: t("dyno torque right"),
+};
+
+const endingOf = (name: string): string | undefined =>
+  Object.keys(UNITS).filter((one) => name.endsWith(`_${one}`)).sort((one, other) => other.length - one.length)[0];
+
+// The unit that a name ends with; "" if it ends with none.
+export const unitIn = (name: string): string => UNITS[endingOf(name) ?? ""] ?? "";
+
 // A channel's name without its unit, in words.
 export function wordsOf(channel: string): string {
-  const ending = Object.keys(UNITS).filter((one) => channel.endsWith(`_${one}`)).sort((one, other) => other.length - one.length)[0];
+  const ending = endingOf(channel);
   const bare = ending ? channel.slice(0, -ending.length - 1) : channel;
-  return bare.replaceAll("_", " ");
+  return CHANNELS[bare] ?? bare.replaceAll("_", " ");
 }
 
 export const limitText = (upper: number | null | undefined, lower: number | null | undefined, unit = ""): string =>

@@ -7,6 +7,7 @@ import "uplot/dist/uPlot.min.css";
 import "./style/page.css";
 import "./style/plots.css";
 import "./style/studios.css";
+import "./style/panel.css";
 
 beginTheme();
 followLinks();

@@ -3,6 +3,7 @@
 import { useEffect, useMemo } from "preact/hooks";
 import { placeOf, placeOfFormer, type Place } from "./addresses.ts";
 import { API } from "./api/client.ts";
+import { t } from "./i18n/text.ts";
 import { Store, useStore } from "./store.ts";
 
 const former = placeOfFormer(location.pathname, location.hash);
@@ -41,7 +42,7 @@ export function setQuery(query: URLSearchParams, step = false): void {
 const readable = (query: URLSearchParams): string => query.toString().replaceAll("%2C", ",").replaceAll("%3A", ":").replaceAll("%3B", ";");
 
 export function useTitle(title: string): void {
-  useEffect(() => { document.title = `${title} – e-Axle bench service`; }, [title]);
+  useEffect(() => { document.title = `${title} – ${t("e-Axle bench service")}`; }, [title]);
 }
 
 // Links of the page itself are followed here; others, and those opened elsewhere, by the browser.

@@ -1,9 +1,11 @@
 // Light or dark as the system has it, unless somebody chose otherwise in this browser.
 
+import { t } from "./i18n/text.ts";
 import { Store } from "./store.ts";
 
 export type Theme = "system" | "light" | "dark";
 export const THEMES: Theme[] = ["system", "light", "dark"];
+export const THEME_NAMES: Record<Theme, string> = { system: t("as the system"), light: t("light"), dark: t("dark") };
 const KEY = "theme";
 
 // Counts up whenever colours have changed: what is drawn on a canvas is drawn again.
@@ -33,3 +35,10 @@ export function beginTheme(): void {
 }
 
 export const colour = (name: string): string => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+
+// A view that is always light or always dark; what is returned gives the colours of this browser back.
+export function showAs(shown: Exclude<Theme, "system">): () => void {
+  document.documentElement.dataset["theme"] = shown;
+  coloured.value += 1;
+  return show;
+}

@@ -39,7 +39,7 @@ class Stage:
 def stage(out: Path, name: str = "conductor") -> Iterator[Stage]:
     asked: list[str] = []
 
-    def ask(text: str, timeout_s: float) -> str:
+    def ask(text: str, timeout_s: float, picture: str) -> str:
         asked.append(text)
         return "yes"
 

@@ -14,6 +14,7 @@ from hil.core.errors import BadInputError
 from hil.engine.bench.bench_file import shipped
 from hil.service.files.catalogues import controller_catalogue, model_catalogue
 from hil.service.files.legacy_import import LegacyImport
+from hil.service.files.pictures import Pictures
 from hil.service.files.plans import Plans
 from hil.service.files.uploads import NameTakenError, Uploads
 from hil.service.store import GivenStore, LogStore
@@ -31,7 +32,9 @@ class _Here:
         self.folder, self.store, self.log = folder, GivenStore(engine), LogStore(engine)
         controllers = Uploads(self.store, "controller", folder / "given/plans", ".toml")
         self.files = Uploads(self.store, "plan", folder / "given/plans", ".yaml")
-        self.plans, self.controllers = Plans(self.files, controllers), controller_catalogue(controllers)
+        pictures = Pictures(self.store, folder / "given/plans")
+        self.plans = Plans(self.files, controllers, pictures)
+        self.controllers = controller_catalogue(controllers)
         self.models = model_catalogue(Uploads(self.store, "model", folder / "given/models", ".toml"))
 
     def take_in(self) -> list[KeptApart]:

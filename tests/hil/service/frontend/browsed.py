@@ -12,14 +12,14 @@ from playwright import sync_api as playwright
 from tests.hil.service.served import Served
 
 _ROOT = Path(__file__).parents[4]
+BUILT = pytest.mark.skipif(
+    not (_ROOT / "hil/service/frontend/built/index.html").is_file(), reason="the page is not built: make page"
+)
 #: For modules of such tests.
 IN_A_BROWSER = [
     pytest.mark.slow,
     pytest.mark.skipif(shutil.which("chromium") is None, reason="there is no chromium"),
-    pytest.mark.skipif(
-        not (_ROOT / "hil/service/frontend/built/index.html").is_file(),
-        reason="the page is not built: make page",
-    ),
+    BUILT,
 ]
 expect = playwright.expect
 expect.set_options(timeout=60_000)

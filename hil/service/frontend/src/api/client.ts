@@ -1,5 +1,7 @@
 // Requests to the service, and errors in its words.
 
+import { t } from "../i18n/text.ts";
+import { noteDate } from "./clock.ts";
 import type { Health, Problem } from "./types.ts";
 
 export const API = "/api/v1";
@@ -15,23 +17,29 @@ export class Refused extends Error {
   }
 }
 
-type Body = object | string | undefined;
+type Body = object | string | Uint8Array<ArrayBuffer> | undefined;
 
-// A text is sent as a file, anything else as JSON.
+function typeOf(body: object | string): string {
+  if (body instanceof Blob) return body.type;
+  return typeof body === "string" ? "text/plain" : body instanceof Uint8Array ? "application/octet-stream" : "application/json";
+}
+
+// A text, bytes or a file are sent as they are, anything else as JSON.
 async function fetched(method: string, path: string, body: Body, signal?: AbortSignal): Promise<string> {
   const options: RequestInit = { method, headers: {}, signal: signal ?? null };
   if (body !== undefined) {
-    const isFile = typeof body === "string";
-    options.headers = { "content-type": isFile ? "text/plain" : "application/json" };
-    options.body = isFile ? body : JSON.stringify(body);
+    const asItIs = typeof body === "string" || body instanceof Uint8Array || body instanceof Blob;
+    options.headers = { "content-type": typeOf(body) };
+    options.body = asItIs ? body : JSON.stringify(body);
   }
   let answer: Response;
   try {
     answer = await fetch(`${API}${path}`, options);
   } catch (error) {
     if (signal?.aborted) throw error;
-    throw new Refused(0, { what: "the service does not answer", where: "", fix: "" });
+    throw new Refused(0, { what: t("the service does not answer"), where: "", fix: "" });
   }
+  noteDate(answer.headers.get("date"));
   const text = await answer.text();
   if (answer.ok) return text;
   throw new Refused(answer.status, problemOf(answer.status, text));
@@ -41,7 +49,7 @@ function problemOf(status: number, text: string): Problem {
   try {
     return JSON.parse(text) as Problem;
   } catch { // a proxy's answer
-    return { what: `status ${status}`, where: "", fix: "" };
+    return { what: t("status {status}", { status }), where: "", fix: "" };
   }
 }
 
@@ -79,7 +87,7 @@ export async function stopNow(bench: string): Promise<void> {
 
 async function byStopPost(path: string): Promise<void> {
   const answer = await fetch(`${stopUrl}${API}${path}`, { method: "POST", credentials: "include" });
-  if (!answer.ok) throw new Refused(answer.status, { what: `status ${answer.status}`, where: "", fix: "" });
+  if (!answer.ok) throw new Refused(answer.status, { what: t("status {status}", { status: answer.status }), where: "", fix: "" });
 }
 
 async function insist(way: () => Promise<unknown>): Promise<void> {

@@ -3,6 +3,7 @@
 import type { JSX } from "preact";
 import { useMemo, useRef, useState } from "preact/hooks";
 import type { LimitLine, Mark, RunView } from "../api/types.ts";
+import { t } from "../i18n/text.ts";
 import { useLive, type Live } from "../live.ts";
 import { useStore } from "../store.ts";
 import { useBoardState } from "./board-state.ts";
@@ -64,7 +65,7 @@ export function Board({ view, plan, bench }: BoardOptions): JSX.Element {
               onDrop={(channel) => change(at, withChannel(plot, channel))} onTake={(channel) => change(at, withoutChannel(plot, channel))} onRemove={() => change(at, null)}
             />
           ))}
-          {state.plots.length ? null : <p class="quiet">No plot. Add one above.</p>}
+          {state.plots.length ? null : <p class="quiet">{t("No plot. Add one above.")}</p>}
         </div>
         <div class="board-side">
           <ChannelList channels={view.channels} plots={state.plots} newest={bench === null ? null : source.newest} onPut={(channel, at) => change(at, withChannel(state.plots[at] ?? { kind: "time", channels: [] }, channel))} />

@@ -3,6 +3,7 @@
 import type { JSX } from "preact";
 import { useMemo, useState } from "preact/hooks";
 import { figure, wordsOf } from "../format.ts";
+import { t } from "../i18n/text.ts";
 import { Store, useStore } from "../store.ts";
 import type { PlotSpec } from "./layout.ts";
 import { DRAGGED } from "./plot-card.tsx";
@@ -23,15 +24,15 @@ export function ChannelList({ channels, plots, newest, onPut }: Options): JSX.El
   const shown = useMemo(() => Object.keys(channels).filter((one) => `${one} ${wordsOf(one)}`.includes(words.trim().toLowerCase())), [channels, words]);
   return (
     <section class="channels" aria-labelledby="channels-heading">
-      <h3 id="channels-heading">Channels</h3>
-      <input type="search" aria-label="Find a channel" placeholder="Find a channel" value={words} onInput={(event) => setWords(event.currentTarget.value)} />
+      <h3 id="channels-heading">{t("Channels")}</h3>
+      <input type="search" aria-label={t("Find a channel")} placeholder={t("Find a channel")} value={words} onInput={(event) => setWords(event.currentTarget.value)} />
       <ul>
         {shown.map((channel) => (
           <li key={channel} draggable onDragStart={(event) => { event.dataTransfer?.setData(DRAGGED, channel); }}>
             <span title={channel}>{wordsOf(channel)} <span class="quiet">{valueText(traces, channel, channels[channel] ?? "")}</span></span>
-            <select aria-label={`Put ${wordsOf(channel)} onto a plot`} value="" onChange={(event) => { onPut(channel, Number(event.currentTarget.value)); event.currentTarget.value = ""; }}>
-              <option value="" disabled>onto …</option>
-              {plots.map((plot, at) => <option key={at} value={at} disabled={plot.channels.includes(channel)}>{`plot ${at + 1}`}</option>)}
+            <select aria-label={t("Put {channel} onto a plot", { channel: wordsOf(channel) })} value="" onChange={(event) => { onPut(channel, Number(event.currentTarget.value)); event.currentTarget.value = ""; }}>
+              <option value="" disabled>{t("onto …")}</option>
+              {plots.map((plot, at) => <option key={at} value={at} disabled={plot.channels.includes(channel)}>{t("plot {number}", { number: at + 1 })}</option>)}
             </select>
           </li>
         ))}

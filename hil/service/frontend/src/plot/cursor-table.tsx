@@ -2,6 +2,7 @@
 
 import type { JSX } from "preact";
 import { figure, fixed, joined, wordsOf } from "../format.ts";
+import { t } from "../i18n/text.ts";
 import { useStore, type Store } from "../store.ts";
 import { Scroll } from "../ui/parts.tsx";
 import { NAMES_OF_CURSORS } from "./canvas.ts";
@@ -24,22 +25,22 @@ export function CursorTable({ traces: store, channels, units, cursors, chosen, o
   const first = cursors[0] ?? 0;
   return (
     <section class="cursors" aria-labelledby="cursors-heading">
-      <h3 id="cursors-heading">Cursors</h3>
-      <Scroll label="Values at the cursors">
+      <h3 id="cursors-heading">{t("Cursors")}</h3>
+      <Scroll label={t("Values at the cursors")}>
         <table>
           <thead>
-            <tr><th scope="col">channel</th>
+            <tr><th scope="col">{t("channel")}</th>
               {cursors.map((_, at) => (
                 <th scope="col" class="number" key={at}>
-                  <button type="button" class="plain" aria-pressed={at === chosen} aria-label={`Cursor ${letter(at)}`} onClick={() => onChoose(at)}>{letter(at)}</button>
-                  <button type="button" class="plain" aria-label={`Remove cursor ${letter(at)}`} onClick={() => onRemove(at)}>×</button>
+                  <button type="button" class="plain" aria-pressed={at === chosen} aria-label={t("Cursor {letter}", { letter: letter(at) })} onClick={() => onChoose(at)}>{letter(at)}</button>
+                  <button type="button" class="plain" aria-label={t("Remove cursor {letter}", { letter: letter(at) })} onClick={() => onRemove(at)}>×</button>
                 </th>
               ))}
               {cursors.slice(1).map((_, at) => <th scope="col" class="number" key={at}>{`${letter(at + 1)} − A`}</th>)}
             </tr>
           </thead>
           <tbody>
-            <tr><th scope="row">time</th>
+            <tr><th scope="row">{t("time")}</th>
               {cursors.map((one, at) => <td class="number" key={at}>{joined(fixed(one, 3), "s")}</td>)}
               {cursors.slice(1).map((one, at) => <td class="number" key={at}>{joined(fixed(one - first, 3).replace("-", "−"), "s")}</td>)}
             </tr>
@@ -59,7 +60,7 @@ export function CursorTable({ traces: store, channels, units, cursors, chosen, o
           </tbody>
         </table>
       </Scroll>
-      <p class="quiet">Where a place on the screen has several samples, lowest and highest are given, and differences are between their middles.</p>
+      <p class="quiet">{t("Where a place on the screen has several samples, lowest and highest are given, and differences are between their middles.")}</p>
     </section>
   );
 }

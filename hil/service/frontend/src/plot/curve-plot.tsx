@@ -3,7 +3,7 @@
 import type { JSX } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import uPlot from "uplot";
-import { figure } from "../format.ts";
+import { figure, significant } from "../format.ts";
 import { colour, coloured } from "../theme.ts";
 import { drawBand } from "./canvas.ts";
 import { axis, HEIGHT, onWidth, roomy } from "./frame.ts";
@@ -116,7 +116,7 @@ const roundOnes = (values: readonly (number | null)[]): (number | null)[] => val
 // The last of them says of what they are.
 function named(values: readonly (number | null)[], unit: string): string[] {
   const last = values.findLastIndex((one) => one !== null);
-  return values.map((one, at) => (one === null ? "" : `${String(Number(one.toPrecision(3))).replace("-", "−")}${at === last && unit ? ` ${unit}` : ""}`));
+  return values.map((one, at) => (one === null ? "" : `${significant(one, 3)}${at === last && unit ? ` ${unit}` : ""}`));
 }
 
 function pointedAt(plot: uPlot, { curves, x, y }: CurvePlotOptions, starts: number[]): string {

@@ -2,7 +2,7 @@
 
 import type uPlot from "uplot";
 import { colour } from "../theme.ts";
-import { digitsOf, figure } from "../format.ts";
+import { digitsOf, figure, fixed } from "../format.ts";
 
 export const ROLES = ["gain", "phase", "third", "fourth", "fifth", "reference", "measured"] as const;
 export const roleOf = (at: number): string => ROLES[at % ROLES.length] ?? "gain";
@@ -12,7 +12,7 @@ const ticks = (values: readonly (number | null)[]): string[] => {
   const there = values.filter((one): one is number => one !== null);
   const step = there.length > 1 ? Math.abs((there[1] as number) - (there[0] as number)) : 1;
   const digits = digitsOf(step);
-  return values.map((one) => (one === null ? "" : Math.abs(one) >= 1e6 || (step < 1e-5 && one !== 0) ? figure(one) : one.toFixed(digits).replace("-", "−")));
+  return values.map((one) => (one === null ? "" : Math.abs(one) >= 1e6 || (step < 1e-5 && one !== 0) ? figure(one) : fixed(one, digits).replace("-", "−")));
 };
 
 export function axis(options: Partial<uPlot.Axis> & { unit?: string }): uPlot.Axis {

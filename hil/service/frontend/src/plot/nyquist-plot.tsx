@@ -3,6 +3,7 @@
 import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import uPlot from "uplot";
+import { t } from "../i18n/text.ts";
 import { colour, coloured } from "../theme.ts";
 import { axis, onWidth } from "./frame.ts";
 import type { Values } from "./curve-plot.tsx";
@@ -31,7 +32,7 @@ export function NyquistPlot({ loops, label }: { loops: Loop[]; label: string }):
   useEffect(() => plot.current?.redraw(false, false), [loops]);
   return (
     <figure class="plot">
-      <figcaption><b>Nyquist curve</b>{loops.map((one) => <span class="chip" key={one.name}><span class={`swatch ${one.role}`} />{one.name}</span>)}</figcaption>
+      <figcaption><b>{t("Nyquist curve")}</b>{loops.map((one) => <span class="chip" key={one.name}><span class={`swatch ${one.role}`} />{one.name}</span>)}</figcaption>
       <div class="canvas" ref={place} role="img" aria-label={label} />
     </figure>
   );

@@ -4,6 +4,7 @@ import type { JSX } from "preact";
 import { useState } from "preact/hooks";
 import type { LimitLine, Mark, RunView } from "../api/types.ts";
 import { figure, wordsOf } from "../format.ts";
+import { t } from "../i18n/text.ts";
 import { useStore } from "../store.ts";
 import { roleOf } from "./frame.ts";
 import type { PlotSpec } from "./layout.ts";
@@ -36,14 +37,15 @@ interface Options {
   onRemove: () => void;
 }
 
-const KINDS = { time: "", spectrum: "Spectrum: ", xy: "XY: " };
+const KINDS = { time: "", spectrum: t("Spectrum"), xy: "XY" };
 
 export function PlotCard(options: Options): JSX.Element {
   const { plot, number, view, source, hover } = options;
   const [over, setOver] = useState(false);
   const settled = useSettled(source.range, options.following, source.last);
   const others = Object.keys(view.channels).filter((channel) => !plot.channels.includes(channel));
-  const label = `Plot ${number}: ${KINDS[plot.kind]}${plot.channels.map(wordsOf).join(", ") || "no channel"}`;
+  const what = [KINDS[plot.kind], plot.channels.map(wordsOf).join(", ") || t("no channel")].filter(Boolean).join(": ");
+  const label = t("Plot {number}: {what}", { number, what });
   const drop = (event: DragEvent) => {
     const channel = event.dataTransfer?.getData(DRAGGED);
     setOver(false);
@@ -55,21 +57,21 @@ export function PlotCard(options: Options): JSX.Element {
     <figure class={over ? "plot over" : "plot"} aria-label={label}
       onDragOver={(event) => { if (event.dataTransfer?.types.includes(DRAGGED)) { event.preventDefault(); setOver(true); } }} onDragLeave={() => setOver(false)} onDrop={drop}>
       <figcaption class="small">
-        {plot.kind === "time" ? null : <b>{KINDS[plot.kind]}</b>}
+        {plot.kind === "time" ? null : <b>{`${KINDS[plot.kind]}: `}</b>}
         {plot.channels.map((channel, at) => <Chip key={channel} channel={channel} role={plot.kind === "time" ? roleOf(at) : ""} unit={view.channels[channel] ?? ""} source={source} at={hover} onTake={() => options.onTake(channel)} />)}
         <span class="plot-buttons">
-          <select aria-label={`Add a channel to plot ${number}`} value="" onChange={(event) => { options.onDrop(event.currentTarget.value); event.currentTarget.value = ""; }}>
-            <option value="" disabled>Channel …</option>
+          <select aria-label={t("Add a channel to plot {number}", { number })} value="" onChange={(event) => { options.onDrop(event.currentTarget.value); event.currentTarget.value = ""; }}>
+            <option value="" disabled>{t("Channel …")}</option>
             {others.map((channel) => <option key={channel} value={channel}>{channel}</option>)}
           </select>
-          <button type="button" class="plain" aria-label={`Remove plot ${number}`} title="Remove this plot" onClick={options.onRemove}>✕</button>
+          <button type="button" class="plain" aria-label={t("Remove plot {number}", { number })} title={t("Remove this plot")} onClick={options.onRemove}>✕</button>
         </span>
       </figcaption>
       <div class="plot-place" tabIndex={0} role="img" aria-label={label}>
         {plot.kind === "time" ? <TimePlot channels={plot.channels} units={view.channels} traces={source.traces} range={source.range} marks={options.marks} limits={options.limits} cursors={options.cursors} chosen={options.chosen} onRange={options.onRange} onCursor={options.onCursor} onHover={options.onHover} /> : null}
         {plot.kind === "spectrum" && plot.channels[0] && settled ? <SpectrumPlot run={view.run} channel={plot.channels[0]} unit={view.channels[plot.channels[0]] ?? ""} range={settled} /> : null}
         {plot.kind === "xy" && settled ? <XyPlot run={view.run} channels={plot.channels} units={view.channels} range={settled} /> : null}
-        {plot.kind !== "time" && !settled ? <p class="quiet canvas">Too little has been measured yet.</p> : null}
+        {plot.kind !== "time" && !settled ? <p class="quiet canvas">{t("Too little has been measured yet.")}</p> : null}
       </div>
     </figure>
   );
@@ -83,7 +85,7 @@ function Chip({ channel, role, unit, source, at, onTake }: { channel: string; ro
     <span class="chip">
       {role ? <span class={`swatch ${role}`} /> : null}
       <span title={channel}>{wordsOf(channel)}</span> <output>{text}</output>
-      <button type="button" class="plain" aria-label={`Take ${wordsOf(channel)} off`} onClick={onTake}>×</button>
+      <button type="button" class="plain" aria-label={t("Take {channel} off", { channel: wordsOf(channel) })} onClick={onTake}>×</button>
     </span>
   );
 }

@@ -6,6 +6,8 @@ import uPlot from "uplot";
 import { get } from "../api/client.ts";
 import type { RunSpectrum } from "../api/types.ts";
 import { figure } from "../format.ts";
+import { English } from "../i18n/english.tsx";
+import { t } from "../i18n/text.ts";
 import { colour, coloured } from "../theme.ts";
 import { drawBand } from "./canvas.ts";
 import { axis, HEIGHT, onWidth, roleOf, roomy } from "./frame.ts";
@@ -45,7 +47,7 @@ export function SpectrumPlot({ run, channel, unit, range }: { run: number; chann
   return (
     <>
       <div class="canvas" ref={place} />
-      <p class="quiet">{why || (found ? `8 to 20 Hz: ${figure(found.band_energy, `(${unit})²`)} from ${figure(found.start_s)} to ${figure(found.end_s, "s")}` : "…")}</p>
+      <p class="quiet">{why ? <English>{why}</English> : (found ? t("8 to 20 Hz: {energy} from {start} to {end}", { energy: figure(found.band_energy, `(${unit})²`), start: figure(found.start_s), end: figure(found.end_s, "s") }) : "…")}</p>
     </>
   );
 }

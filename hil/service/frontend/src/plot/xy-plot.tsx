@@ -5,6 +5,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import uPlot from "uplot";
 import { get } from "../api/client.ts";
 import type { RunSamples } from "../api/types.ts";
+import { t } from "../i18n/text.ts";
 import { colour, coloured } from "../theme.ts";
 import { axis, HEIGHT, onWidth, roleOf, roomy } from "./frame.ts";
 import type { Range } from "./range.ts";
@@ -28,7 +29,7 @@ export function XyPlot({ run, channels, units, range }: { run: number; channels:
       try {
         const found = await get<RunSamples>(`/runs/${run}/samples?${query}`, control.signal);
         points.current = { x: found.channels[x] ?? [], y: found.channels[y] ?? [] };
-        setAbout(found.every > 1 ? `Every ${found.every}th sample is drawn.` : "Every sample is drawn.");
+        setAbout(found.every > 1 ? t("One sample in {count} is drawn.", { count: found.every }) : t("Every sample is drawn."));
       } catch (error) {
         if (control.signal.aborted) return;
         points.current = { x: [], y: [] };
@@ -41,7 +42,7 @@ export function XyPlot({ run, channels, units, range }: { run: number; channels:
   }, [run, query]);
   useEffect(() => {
     const element = place.current as HTMLDivElement;
-    const made = make(element, points, `${x} in ${units[x] ?? ""}`, units[y] ?? "");
+    const made = make(element, points, t("{channel} in {unit}", { channel: x, unit: units[x] ?? "" }), units[y] ?? "");
     plot.current = made;
     const stops = [coloured.subscribe(() => made.redraw(false, true)), onWidth(element, (width) => made.setSize({ width, height: HEIGHT }))];
     return () => { stops.forEach((stop) => stop()); made.destroy(); plot.current = null; };
@@ -49,7 +50,7 @@ export function XyPlot({ run, channels, units, range }: { run: number; channels:
   return (
     <>
       <div class="canvas" ref={place} />
-      <p class="quiet">{y ? about : "Add a second channel."}</p>
+      <p class="quiet">{y ? about : t("Add a second channel.")}</p>
     </>
   );
 }

@@ -1,7 +1,9 @@
 // Commands of the palette, and the addresses of the menu.
 
 import { to } from "../addresses.ts";
-import { chooseTheme, THEMES } from "../theme.ts";
+import { chooseLanguage, LANGUAGES, type Language } from "../i18n/language.ts";
+import { t } from "../i18n/text.ts";
+import { chooseTheme, THEME_NAMES, THEMES } from "../theme.ts";
 import type { Entry } from "./matching.ts";
 import { benchInSight } from "./stop.tsx";
 import { attempt } from "../data.ts";
@@ -9,13 +11,18 @@ import { stopNow } from "../api/client.ts";
 import { signOut } from "./sign-in.tsx";
 
 export const MENU = [
-  ["benches", "Benches"], ["runs", "Runs"], ["compare", "Compare"], ["trends", "Trends"], ["plans", "Plans"], ["models", "Models"],
-  ["controllers", "Controllers"], ["design", "Design"], ["identifications", "Identify"], ["diagnoses", "Diagnose"], ["campaigns", "Campaigns"], ["audit", "Audit"], ["settings", "Settings"],
+  ["benches", t("Benches"), "Benches"], ["runs", t("Runs"), "Runs"], ["compare", t("Compare"), "Compare"], ["trends", t("Trends"), "Trends"], ["plans", t("Plans"), "Plans"], ["models", t("Models"), "Models"],
+  ["controllers", t("Controllers"), "Controllers"], ["design", t("Design"), "Design"], ["recordings", t("Recordings"), "Recordings"], ["identifications", t("Identify"), "Identify"], ["diagnoses", t("Diagnose"), "Diagnose"], ["campaigns", t("Campaigns"), "Campaigns"],
+  ["audit", t("Audit"), "Audit"], ["settings", t("Settings"), "Settings"],
 ] as const;
+const MORE = [["bench-files", t("Bench files"), "Bench files"]] as const; // beside the menu, which is full
 
+// Whoever cannot read the page's language finds their own here by its name.
 export const commands = (): Entry[] => [
-  ...MENU.map(([view, name]) => ({ kind: "page", name, about: "", path: to.list(view) })),
-  ...THEMES.map((theme) => ({ kind: "command", name: `Colours: ${theme}`, about: "light or dark", act: () => chooseTheme(theme) })),
-  { kind: "command", name: "Emergency stop", about: benchInSight.value || "all benches", act: () => void attempt(() => stopNow(benchInSight.value)) },
-  { kind: "command", name: "Sign out", about: "", act: () => void signOut() },
+  ...[...MENU, ...MORE].map(([view, name, also]) => ({ kind: t("page"), name, about: "", path: to.list(view), also: `page ${also}` })),
+  { kind: t("page"), name: t("For the wall of a control room"), about: "", path: to.wall(), also: "page wall" },
+  ...THEMES.map((theme) => ({ kind: t("command"), name: t("Colours: {theme}", { theme: THEME_NAMES[theme] }), about: t("light or dark"), act: () => chooseTheme(theme), also: `command Colours: ${theme}` })),
+  ...Object.entries(LANGUAGES).map(([tag, name]) => ({ kind: t("command"), name: t("Language: {language}", { language: name }), about: "", act: () => chooseLanguage(tag as Language), also: `command Language: ${tag}` })),
+  { kind: t("command"), name: t("Emergency stop"), about: benchInSight.value || t("all benches"), act: () => void attempt(() => stopNow(benchInSight.value)), also: "command Emergency stop" },
+  { kind: t("command"), name: t("Sign out"), about: "", act: () => void signOut(), also: "command Sign out" },
 ];

@@ -3,7 +3,8 @@
 export interface Entry {
   kind: string;
   name: string;
-  about: string;
+  about: string; // in the reader's language, as the name is
+  also?: string; // the name in English: who knows that finds it, too
   path?: string;
   act?: () => void;
 }
@@ -17,7 +18,7 @@ export function found(entries: Entry[], text: string, most: number): Entry[] {
 
 // 0 where a name begins with every word; more the farther inside they stand; null where one is missing.
 function rankOf(entry: Entry, words: string[]): number | null {
-  const name = entry.name.toLowerCase(), all = `${name} ${entry.about} ${entry.kind}`.toLowerCase();
+  const name = entry.name.toLowerCase(), all = `${name} ${entry.about} ${entry.kind} ${entry.also ?? ""}`.toLowerCase();
   let rank = 0;
   for (const word of words) {
     if (name.startsWith(word)) continue;

@@ -5,9 +5,11 @@ import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/ho
 import { get } from "../api/client.ts";
 import type { Bench, Plan, Run } from "../api/types.ts";
 import { to } from "../addresses.ts";
+import { t } from "../i18n/text.ts";
 import { go } from "../router.ts";
 import { session } from "../session.ts";
 import { Store, useStore } from "../store.ts";
+import { kindInWords } from "../ui/kinds.ts";
 import { found, type Entry } from "./matching.ts";
 import { commands } from "./commands.ts";
 
@@ -48,20 +50,20 @@ function Open(): JSX.Element {
     event.preventDefault();
   };
   return (
-    <dialog ref={dialog} class="palette" aria-label="Find" onClose={close} onClick={(event) => { if (event.target === dialog.current) close(); }}>
+    <dialog ref={dialog} class="palette" aria-label={t("Find")} onClose={close} onClick={(event) => { if (event.target === dialog.current) close(); }}>
       <input
         type="text" role="combobox" aria-expanded="true" aria-controls="palette-list" aria-autocomplete="list" aria-activedescendant={`entry-${at}`}
-        aria-label="Find a plan, run, bench, model or command" placeholder="Plan, run, bench, model or command" autocomplete="off" spellcheck={false}
+        aria-label={t("Find a plan, run, bench, model or command")} placeholder={t("Plan, run, bench, model or command")} autocomplete="off" spellcheck={false}
         value={text} onInput={(event) => { setText(event.currentTarget.value); setAt(0); }} onKeyDown={keyed}
       />
-      <ul id="palette-list" role="listbox" aria-label="Found">
+      <ul id="palette-list" role="listbox" aria-label={t("Found")}>
         {shown.map((entry, index) => (
           <li key={`${entry.kind} ${entry.name}`} id={`entry-${index}`} role="option" aria-selected={index === at} onMouseMove={() => setAt(index)} onClick={() => choose(entry)}>
             <span>{entry.name}</span> <span class="quiet">{entry.about}</span><span class="kind">{entry.kind}</span>
           </li>
         ))}
       </ul>
-      {shown.length ? null : <p class="quiet" role="status">Nothing has these words.</p>}
+      {shown.length ? null : <p class="quiet" role="status">{t("Nothing has these words.")}</p>}
     </dialog>
   );
 }
@@ -72,7 +74,7 @@ function useEntries(): Entry[] {
   const [entries, setEntries] = useState<Entry[]>(() => [...commands(), ...known]);
   useEffect(() => {
     let open = true;
-    const asked = [benches(), plans(), named("/models", "model", to.model), named("/controllers", "controller", to.controller)];
+    const asked = [benches(), plans(), named("/models", t("model"), "model", to.model), named("/controllers", t("controller"), "controller", to.controller)];
     void Promise.all(asked.map((one) => one.catch(() => []))).then((all) => {
       known = all.flat();
       if (open) setEntries([...commands(), ...known]);
@@ -82,9 +84,9 @@ function useEntries(): Entry[] {
   return entries;
 }
 
-const benches = async (): Promise<Entry[]> => (await get<Bench[]>("/benches")).map((bench) => ({ kind: "bench", name: bench.name, about: bench.title, path: to.bench(bench.name) }));
-const plans = async (): Promise<Entry[]> => (await get<Plan[]>("/plans")).map((plan) => ({ kind: "plan", name: plan.name, about: plan.title, path: to.plan(plan.name) }));
-const named = async (path: string, kind: string, address: (name: string) => string): Promise<Entry[]> => (await get<{ name: string }[]>(path)).map(({ name }) => ({ kind, name, about: "", path: address(name) }));
+const benches = async (): Promise<Entry[]> => (await get<Bench[]>("/benches")).map((bench) => ({ kind: t("bench"), also: "bench", name: bench.name, about: bench.title, path: to.bench(bench.name) }));
+const plans = async (): Promise<Entry[]> => (await get<Plan[]>("/plans")).map((plan) => ({ kind: t("plan"), also: "plan", name: plan.name, about: plan.title, path: to.plan(plan.name) }));
+const named = async (path: string, kind: string, also: string, address: (name: string) => string): Promise<Entry[]> => (await get<{ name: string }[]>(path)).map(({ name }) => ({ kind, also, name, about: "", path: address(name) }));
 
 // A number is a run's; without one the newest are offered.
 function useRuns(text: string): Entry[] {
@@ -99,4 +101,4 @@ function useRuns(text: string): Entry[] {
   return runs;
 }
 
-const entryOf = (run: Run): Entry => ({ kind: "run", name: `Run ${run.id}`, about: `${run.title || run.plan}, ${run.bench}, ${run.verdict ?? run.state}`, path: to.run(run.id) });
+const entryOf = (run: Run): Entry => ({ kind: t("run"), name: t("Run {run}", { run: run.id }), about: `${run.title || run.plan}, ${run.bench}, ${kindInWords(run.verdict ?? run.state)}`, path: to.run(run.id), also: `Run ${run.id}` });

@@ -4,6 +4,7 @@ import type { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { stopNow } from "../api/client.ts";
 import { attempt } from "../data.ts";
+import { t } from "../i18n/text.ts";
 import { Store, useStore } from "../store.ts";
 
 // The bench that the view is about; '' for all.
@@ -19,7 +20,7 @@ export function StopButton(): JSX.Element {
   };
   return (
     <button type="button" class="stop" onClick={() => void stop()}>
-      {"Emergency stop "}<small>{sent ? "sent" : bench || "all benches"}</small>
+      {t("Emergency stop")} <small>{sent ? t("sent") : bench || t("all benches")}</small>
     </button>
   );
 }

@@ -2,19 +2,22 @@
 
 import type { ComponentChildren, JSX } from "preact";
 import { moment } from "../format.ts";
+import { English } from "../i18n/english.tsx";
 import type { Asked } from "../data.ts";
 import type { Run } from "../api/types.ts";
+import { kindInWords } from "./kinds.ts";
 
-export const inWords = (name: string): string => name.replaceAll("_", " ");
+export { inWords } from "./kinds.ts";
+import { t } from "../i18n/text.ts";
 
 export function Badge({ kind }: { kind: string }): JSX.Element {
-  return <span class={`verdict ${kind}`}>{inWords(kind)}</span>;
+  return <span class={`verdict ${kind}`}>{kindInWords(kind)}</span>;
 }
 
 export const verdictOf = (run: Run): string =>
   run.state === "ended" ? (run.verdict ?? "error") : run.state === "interrupted" ? "interrupted" : run.state;
 
-// A moment in the browser's language; as ISO 8601 where the pointer stays on it.
+// A moment in the reader's language; as ISO 8601 where the pointer stays on it.
 export function Moment({ at }: { at: string | null | undefined }): JSX.Element {
   return at ? <time dateTime={at} title={at}>{moment(at)}</time> : <span>–</span>;
 }
@@ -38,16 +41,19 @@ export function Section({ title, aside, children, label }: { title: ComponentChi
   );
 }
 
+// A link around words of a translated sentence: see `tx`.
+export const linkTo = (href: string) => (words: ComponentChildren): JSX.Element => <a href={href}>{words}</a>;
+
 // A table that scrolls by itself where it is wider than the page.
 export function Scroll({ label, children }: { label: string; children: ComponentChildren }): JSX.Element {
-  return <div class="scroll" tabIndex={0} role="region" aria-label={`${label}, table`}>{children}</div>;
+  return <div class="scroll" tabIndex={0} role="region" aria-label={t("{label}, table", { label })}>{children}</div>;
 }
 
 // What was asked for, or why it is not there.
 export function Loaded<T>({ of, children, what }: { of: Asked<T>; what: string; children: (data: T) => ComponentChildren }): JSX.Element {
   if (of.data !== null) return <>{children(of.data)}</>;
-  if (of.error) return <p class="bad" role="alert">{of.error.message}</p>;
-  return <p class="quiet">{`Loading ${what} …`}</p>;
+  if (of.error) return <p class="bad" role="alert"><English>{of.error.message}</English></p>;
+  return <p class="quiet">{t("Loading {what} …", { what })}</p>;
 }
 
 const SHOWN = /\.(html|pdf|json|xml|txt|yaml|toml|csv|svg|png)$/;

@@ -5,51 +5,53 @@ import { useState } from "preact/hooks";
 import { ask, post } from "../api/client.ts";
 import { to } from "../addresses.ts";
 import { attempt } from "../data.ts";
-import { t } from "../i18n/text.ts";
+import { English } from "../i18n/english.tsx";
+import { t, tx } from "../i18n/text.ts";
 import { useLost, type BenchState } from "../live.ts";
 import { useMay, useMe } from "../session.ts";
-import { headlineOf } from "./bench-words.ts";
+import { linkTo } from "../ui/parts.tsx";
+import { PromptCard } from "./panel-prompt.tsx";
+import { aboutBench, headlineOf, isHeld, titleOf } from "./bench-words.ts";
 
 export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 }): JSX.Element {
   const { bench, running, message } = state;
   const Title = level === 1 ? "h1" : "h2";
-  const about = [bench.title || bench.name, bench.simulated ? "simulated" : "", bench.machine ? `at ${bench.machine}` : "", bench.lease || bench.reserved_by ? t("reserved by {who}", { who: bench.lease || (bench.reserved_by ?? "") }) : ""];
   return (
-    <section class={`banner ${bench.state}`} aria-label={`State of ${bench.name}`}>
-      <p class="kind">{about.filter(Boolean).join(", ")}</p>
-      <Title class="headline" aria-live="polite">{headlineOf(bench, running ? running.title || running.plan : null)}</Title>
-      {running ? <p><a href={to.run(running.id)}>{`Run ${running.id}`}</a>{`, by ${running.requested_by}: ${running.doing}`}</p> : null}
-      {bench.why && !(running && bench.state === "running") ? <p>{bench.why}</p> : null}
-      {running ? <progress max={1} value={running.share ?? 0} aria-label="Progress of the run" /> : null}
-      {message ? <p class="message" role="status">{message}</p> : null}
-      <Actions state={state} />
+    <section class={`banner ${bench.state}`} aria-label={t("State of {bench}", { bench: bench.name })}>
+      <p class="kind">{aboutBench(bench, bench.title || bench.name)}</p>
+      <Title class="headline" aria-live="polite">{headlineOf(bench, running ? titleOf(running) : null)}</Title>
+      {running ? <p>{tx("<a>Run {run}</a>, by {person}: {doing}", { a: linkTo(to.run(running.id)), run: running.id, person: running.requested_by, doing: <English>{running.doing}</English> })}</p> : null}
+      {bench.why && !(running && bench.state === "running") ? <p><English>{bench.why}</English></p> : null}
+      {running ? <progress max={1} value={running.share ?? 0} aria-label={t("Progress of the run")} /> : null}
+      {running?.prompt ? <PromptCard prompt={running.prompt} run={running.id} reached={!bench.away_since} /> : message ? <p class="message" role="status"><English>{message}</English></p> : null}
+      <Actions state={state} answers={!running?.prompt} />
     </section>
   );
 }
 
-export function Actions({ state }: { state: BenchState }): JSX.Element | null {
+export function Actions({ state, answers = true }: { state: BenchState; answers?: boolean }): JSX.Element | null {
   const { bench, running, message } = state;
   const may = useMay(), me = useMe();
   const name = encodeURIComponent(bench.name);
   const reached = !bench.away_since;
-  const held = running?.doing?.startsWith("held") ?? false;
+  const held = isHeld(running);
   const order = (what: string) => () => void attempt(() => post(`/runs/${running?.id}/${what}`));
   const release = () => {
-    if (confirm(`Is ${bench.name} no longer driven by its agent? It can then be driven by another agent. A run of this agent is marked as interrupted.`)) void attempt(() => ask("DELETE", `/benches/${name}/agent`));
+    if (confirm(t("Is {bench} no longer driven by its agent? It can then be driven by another agent. A run of this agent is marked as interrupted.", { bench: bench.name }))) void attempt(() => ask("DELETE", `/benches/${name}/agent`));
   };
   const mayReset = bench.state === "emergency_stop" && !running && may("engineer");
   const mayRelease = bench.lease === me.name || may("engineer");
   return (
     <>
-      {running && message && may("operator") && reached ? <AnswerForm run={running.id} /> : null}
+      {answers && running && message && may("operator") && reached ? <AnswerForm run={running.id} /> : null}
       <div class="row">
-        {running && may("operator") && reached && !held ? <button type="button" onClick={order("pause")}>Pause</button> : null}
-        {running && may("operator") && reached && held ? <button type="button" class="main" onClick={order("resume")}>Resume</button> : null}
-        {running && may("operator") ? <button type="button" onClick={order("abort")}>End the run</button> : null}
-        {mayReset ? <button type="button" class="main" onClick={() => void attempt(() => post(`/benches/${name}/reset`))}>It is safe: reset the emergency stop</button> : null}
-        {bench.away_since && may("engineer") ? <button type="button" onClick={release}>Release from its agent</button> : null}
-        {!bench.lease && may("operator") && (!bench.reserved_by || bench.reserved_by === me.name) ? <button type="button" onClick={() => void attempt(() => ask("PUT", `/benches/${name}/lease`, { for_s: 3600 }))}>Reserve for an hour</button> : null}
-        {bench.lease && may("operator") && mayRelease ? <button type="button" onClick={() => void attempt(() => ask("DELETE", `/benches/${name}/lease`))}>End the reservation</button> : null}
+        {running && may("operator") && reached && !held ? <button type="button" onClick={order("pause")}>{t("Pause")}</button> : null}
+        {running && may("operator") && reached && held ? <button type="button" class="main" onClick={order("resume")}>{t("Resume")}</button> : null}
+        {running && may("operator") ? <button type="button" onClick={order("abort")}>{t("End the run")}</button> : null}
+        {mayReset ? <button type="button" class="main" onClick={() => void attempt(() => post(`/benches/${name}/reset`))}>{t("It is safe: reset the emergency stop")}</button> : null}
+        {bench.away_since && may("engineer") ? <button type="button" onClick={release}>{t("Release from its agent")}</button> : null}
+        {!bench.lease && may("operator") && (!bench.reserved_by || bench.reserved_by === me.name) ? <button type="button" onClick={() => void attempt(() => ask("PUT", `/benches/${name}/lease`, { for_s: 3600 }))}>{t("Reserve for an hour")}</button> : null}
+        {bench.lease && may("operator") && mayRelease ? <button type="button" onClick={() => void attempt(() => ask("DELETE", `/benches/${name}/lease`))}>{t("End the reservation")}</button> : null}
       </div>
     </>
   );
@@ -64,12 +66,12 @@ function AnswerForm({ run }: { run: number }): JSX.Element {
   };
   return (
     <form class="row" onSubmit={send}>
-      <label class="field">Answer <input maxLength={500} autocomplete="off" value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
-      <button type="submit" class="main">Send</button>
+      <label class="field">{t("Answer")} <input maxLength={500} autocomplete="off" value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
+      <button type="submit" class="main">{t("Send")}</button>
     </form>
   );
 }
 
 export function LostNotice(): JSX.Element | null {
-  return useLost() ? <p class="alarm" role="alert">The service does not answer. The values shown are not current. If necessary, press the emergency stop at the bench.</p> : null;
+  return useLost() ? <p class="alarm" role="alert">{t("The service does not answer. The values shown are not current. If necessary, press the emergency stop at the bench.")}</p> : null;
 }

@@ -1,13 +1,57 @@
-// States of a bench in words.
+// States of a bench in words: what it does, who has it, what comes next.
 
-import type { Bench } from "../api/types.ts";
+import type { Bench, Run } from "../api/types.ts";
+import { t } from "../i18n/text.ts";
+import type { BenchState } from "../live.ts";
 
-export const STATES: Record<Bench["state"], string> = {
-  free: "Free", running: "Running", ending: "Ending a lost run", in_use: "In use", emergency_stop: "Emergency stop", away: "Agent not connected",
+const STATES: Record<Bench["state"], string> = {
+  free: t("Free"), running: t("Running"), ending: t("Ending a lost run"), in_use: t("In use"), emergency_stop: t("Emergency stop"), away: t("Agent not connected"),
 };
 
+export const isHeld = (run: Run | null): boolean => run?.doing.startsWith("held") ?? false;
+
+export const titleOf = (run: Run): string => run.title || run.plan;
+
 export function headlineOf(bench: Bench, title: string | null): string {
-  if (bench.stop_confirmed === false) return "Emergency stop asked for, NOT CONFIRMED";
-  if (title !== null && bench.state === "running") return `Running: ${title}`;
+  if (bench.stop_confirmed === false) return t("Emergency stop asked for, NOT CONFIRMED");
+  if (title !== null && bench.state === "running") return t("Running: {plan}", { plan: title });
   return STATES[bench.state];
+}
+
+// To be read from afar.
+export function wordOf(bench: Bench, run: Run | null): string {
+  if (bench.state !== "running" || bench.stop_confirmed === false) return headlineOf(bench, null);
+  return run?.prompt ? t("Question") : isHeld(run) ? t("Held") : STATES.running;
+}
+
+// The first that may start as it is; one that waits for somebody where none may.
+export const nextIn = (queue: Run[]): Run | undefined => queue.find((run) => run.state === "queued" && !run.waits_for) ?? queue[0];
+
+// What happens next, by itself or because somebody does something.
+export function nextOf({ bench, running, queue }: BenchState): string {
+  const first = nextIn(queue), more = queue.length - 1;
+  if (bench.state === "emergency_stop") return running ? t("The run is being ended.") : t("When it is safe, an engineer resets the emergency stop.");
+  if (running?.prompt) return t("The run goes on when the question is answered.");
+  if (running && isHeld(running)) return t("The run is held and the torque is off. It goes on when the cause is gone, or with Resume.");
+  if (!first) return t("Nothing waits.");
+  const values = { plan: titleOf(first), person: first.requested_by, count: more };
+  if (first.state === "waiting_approval") return t("Next, when an engineer approves it: {plan}, by {person}", values);
+  return more > 0 ? t("Next: {plan}, by {person}, and {count} more", values) : t("Next: {plan}, by {person}", values);
+}
+
+// Who has a bench for a while from now on, or by a reservation that is under way; '' for no one.
+export const holderOf = (bench: Bench): string => bench.lease || (bench.reserved_by ?? "");
+
+// Where a bench is and who has it, behind its title.
+export const aboutBench = (bench: Bench, title: string): string =>
+  [title, bench.simulated ? t("simulated") : "", bench.machine ? t("at {machine}", { machine: bench.machine }) : "", holderOf(bench) ? t("reserved by {person}", { person: holderOf(bench) }) : ""].filter(Boolean).join(", ");
+
+const LEAST_SHARE = 0.02; // of which the rest is estimated
+
+// Seconds that are left of a run, if it goes on as so far; null where too little has been done.
+export function leftOf(run: Run, nowMs: number): number | null {
+  if (run.prompt || isHeld(run)) return null; // that takes as long as people take
+  const share = run.share ?? 0, began = run.started_at ? Date.parse(run.started_at) : NaN;
+  if (share < LEAST_SHARE || !Number.isFinite(began)) return null;
+  return Math.max(0, ((nowMs - began) / 1000) * ((1 - share) / share));
 }

@@ -5,13 +5,14 @@ import { useEffect } from "preact/hooks";
 import type { FoundRuns, Run, RunView } from "../api/types.ts";
 import { to } from "../addresses.ts";
 import { useData } from "../data.ts";
+import { English } from "../i18n/english.tsx";
+import { t, tx } from "../i18n/text.ts";
 import { useLive } from "../live.ts";
 import { Board } from "../plot/board.tsx";
-import { t } from "../i18n/text.ts";
 import { useMay, useMe } from "../session.ts";
 import { benchInSight } from "../shell/stop.tsx";
 import { useStore } from "../store.ts";
-import { Badge, Moment, Scroll, Section, verdictOf } from "../ui/parts.tsx";
+import { Badge, linkTo, Moment, Scroll, Section, verdictOf } from "../ui/parts.tsx";
 import { Banner, LostNotice } from "./bench-banner.tsx";
 import { Criteria } from "./criteria.tsx";
 import { Queue } from "./queue.tsx";
@@ -32,8 +33,8 @@ export function BenchView({ bench }: { bench: string }): JSX.Element {
   return (
     <>
       <LostNotice />
-      {state ? <Banner state={state} level={1} /> : <h1>{`Bench ${bench}`}</h1>}
-      <p class="links"><a href={to.panel(bench)}>Operator panel</a> <a href={`${to.list("runs")}?bench=${encodeURIComponent(bench)}`}>All runs of this bench</a></p>
+      {state ? <Banner state={state} level={1} /> : <h1>{t("Bench {bench}", { bench })}</h1>}
+      <p class="links"><a href={to.panel(bench)}>{t("Operator panel")}</a> <a href={`${to.list("runs")}?bench=${encodeURIComponent(bench)}`}>{t("All runs of this bench")}</a> <a href={to.wall(bench)}>{t("For the wall of a control room")}</a></p>
       {state && me.tokens ? <p class="quiet">{t("On this page now: {names}", { names: state.viewers.join(", ") })}</p> : null}
       {running ? <Running key={running.id} run={running} /> : null}
       <div class="columns">
@@ -43,9 +44,9 @@ export function BenchView({ bench }: { bench: string }): JSX.Element {
           <Latest bench={bench} over={`${state?.bench.running ?? ""}`} />
         </div>
         <div>
-          <Section title="Queue" label="queue">{state ? <Queue runs={state.queue} /> : null}</Section>
+          <Section title={t("Queue")} label="queue">{state ? <Queue runs={state.queue} /> : null}</Section>
           <Reservations bench={bench} />
-          {may("operator") ? <Section title="Start a plan" label="start"><StartPlan bench={bench} /></Section> : null}
+          {may("operator") ? <Section title={t("Start a plan")} label="start"><StartPlan bench={bench} /></Section> : null}
         </div>
       </div>
     </>
@@ -54,13 +55,13 @@ export function BenchView({ bench }: { bench: string }): JSX.Element {
 
 function Running({ run }: { run: Run }): JSX.Element | null {
   const view = useData<RunView>(`/runs/${run.id}/view`, AGAIN_MS);
-  if (!view.data?.live) return <p class="quiet">Nothing has been measured yet.</p>;
-  return <Section title={<>Live <a href={to.run(run.id)}>{`run ${run.id}`}</a></>} label="plots"><Board view={view.data} plan={run.plan} bench={run.bench} /></Section>;
+  if (!view.data?.live) return <p class="quiet">{t("Nothing has been measured yet.")}</p>;
+  return <Section title={tx("Live <a>run {run}</a>", { a: linkTo(to.run(run.id)), run: run.id })} label="plots"><Board view={view.data} plan={run.plan} bench={run.bench} /></Section>;
 }
 
 function LiveCriteria({ run, live }: { run: number; live: ReturnType<typeof useLive> }): JSX.Element {
   const found = useStore(live.criteria);
-  return <Section title="Criteria decided so far" label="criteria"><Criteria of={found?.run === run ? found.criteria : []} /></Section>;
+  return <Section title={t("Criteria decided so far")} label="criteria"><Criteria of={found?.run === run ? found.criteria : []} /></Section>;
 }
 
 function Latest({ bench, over }: { bench: string; over: string }): JSX.Element {
@@ -71,22 +72,22 @@ function Latest({ bench, over }: { bench: string; over: string }): JSX.Element {
   const ended = runs.find((run) => run.state === "ended");
   return (
     <>
-      <Section title="Latest runs" label="latest">
+      <Section title={t("Latest runs")} label="latest">
         {runs.length ? (
-          <Scroll label="Latest runs">
+          <Scroll label={t("Latest runs")}>
             <table>
-              <thead><tr><th scope="col" class="number">run</th><th scope="col">plan</th><th scope="col">verdict</th><th scope="col">ended</th><th scope="col">by</th></tr></thead>
+              <thead><tr><th scope="col" class="number">{t("run")}</th><th scope="col">{t("plan")}</th><th scope="col">{t("verdict")}</th><th scope="col">{t("ended")}</th><th scope="col">{t("by")}</th></tr></thead>
               <tbody>
                 {runs.map((run) => (
                   <tr key={run.id}>
-                    <td class="number"><a href={to.run(run.id)}>{run.id}</a></td><th scope="row">{run.title || run.plan}{run.reason ? <span class="reason">{run.reason.split("\n")[0]}</span> : null}</th>
-                    <td><Badge kind={verdictOf(run)} />{run.safe_state === "not_confirmed" ? <span class="bad"> NOT CONFIRMED SAFE</span> : null}</td><td><Moment at={run.ended_at} /></td><td>{run.requested_by}</td>
+                    <td class="number"><a href={to.run(run.id)}>{run.id}</a></td><th scope="row">{run.title || run.plan}{run.reason ? <span class="reason"><English>{run.reason.split("\n")[0]}</English></span> : null}</th>
+                    <td><Badge kind={verdictOf(run)} />{run.safe_state === "not_confirmed" ? <span class="bad"> {t("NOT CONFIRMED SAFE")}</span> : null}</td><td><Moment at={run.ended_at} /></td><td>{run.requested_by}</td>
                   </tr>
                 ))}
               </tbody>
             </table>
           </Scroll>
-        ) : <p class="quiet">No run has ended yet.</p>}
+        ) : <p class="quiet">{t("No run has ended yet.")}</p>}
       </Section>
       {ended ? <Trends bench={bench} plan={ended.plan} key={`${ended.plan} ${ended.id}`} /> : null}
     </>

@@ -4,9 +4,10 @@ import type { JSX } from "preact";
 import type { Bench, Run } from "../api/types.ts";
 import { to } from "../addresses.ts";
 import { useData } from "../data.ts";
-import { t } from "../i18n/text.ts";
-import { Heading, Loaded } from "../ui/parts.tsx";
-import { STATES } from "./bench-words.ts";
+import { English } from "../i18n/english.tsx";
+import { t, tn, tx } from "../i18n/text.ts";
+import { Heading, linkTo, Loaded } from "../ui/parts.tsx";
+import { aboutBench, headlineOf } from "./bench-words.ts";
 
 const AGAIN_MS = 2000;
 
@@ -14,12 +15,14 @@ export function Benches(): JSX.Element {
   const benches = useData<Bench[]>("/benches", AGAIN_MS);
   return (
     <>
-      <Heading>Benches</Heading>
-      <Loaded of={benches} what="benches">
+      <Heading>{t("Benches")}</Heading>
+      <p class="links"><a href={to.wall()}>{t("For the wall of a control room")}</a></p>
+      <Loaded of={benches} what={t("benches")}>
         {(all) => all.length
           ? <ul class="cards">{all.map((bench) => <Card key={bench.name} bench={bench} />)}</ul>
-          : <p>No bench yet. Agents bring them: <code>hil bench agent --server URL</code></p>}
+          : <p>{tx("No bench yet. Agents bring them: {command}", { command: <code>hil bench agent --server URL</code> })}</p>}
       </Loaded>
+      <p class="links"><a href={to.list("bench-files")}>{t("Bench files")}</a></p>
     </>
   );
 }
@@ -29,12 +32,12 @@ function Card({ bench }: { bench: Bench }): JSX.Element {
   return (
     <li class={`card bench ${bench.state}`}>
       <h2><a href={to.bench(bench.name)}>{bench.name}</a></h2>
-      <p class="quiet">{[bench.title, bench.simulated ? "simulated" : "", bench.machine ? `at ${bench.machine}` : "", bench.lease || bench.reserved_by ? t("reserved by {who}", { who: bench.lease || (bench.reserved_by ?? "") }) : ""].filter(Boolean).join(", ")}</p>
-      <p class="state">{bench.stop_confirmed === false ? "Emergency stop asked for, NOT CONFIRMED" : STATES[bench.state]}</p>
-      {bench.why ? <p>{bench.why}</p> : null}
-      {run ? <p><a href={to.run(run.id)}>{`Run ${run.id}`}</a>{`: ${run.title || run.plan}, by ${run.requested_by}`}</p> : null}
-      {run ? <progress max={1} value={run.share ?? 0} aria-label={`Progress of run ${run.id}`} /> : null}
-      <p class="quiet">{bench.waiting === 0 ? "No run waits." : bench.waiting === 1 ? "1 run waits." : `${bench.waiting} runs wait.`} <a href={to.panel(bench.name)} aria-label={`Operator panel of ${bench.name}`}>Operator panel</a></p>
+      <p class="quiet">{aboutBench(bench, bench.title)}</p>
+      <p class="state">{headlineOf(bench, null)}</p>
+      {bench.why ? <p><English>{bench.why}</English></p> : null}
+      {run ? <p>{tx("<a>Run {run}</a>: {plan}, by {person}", { a: linkTo(to.run(run.id)), run: run.id, plan: run.title || run.plan, person: run.requested_by })}</p> : null}
+      {run ? <progress max={1} value={run.share ?? 0} aria-label={t("Progress of run {run}", { run: run.id })} /> : null}
+      <p class="quiet">{bench.waiting === 0 ? t("No run waits.") : tn("{count} run waits.", "{count} runs wait.", bench.waiting)} <a href={to.panel(bench.name)} aria-label={t("Operator panel of {bench}", { bench: bench.name })}>{t("Operator panel")}</a></p>
     </li>
   );
 }

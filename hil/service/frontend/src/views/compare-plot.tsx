@@ -6,6 +6,7 @@ import uPlot from "uplot";
 import { get } from "../api/client.ts";
 import type { RunTraces, RunView } from "../api/types.ts";
 import { figure, wordsOf } from "../format.ts";
+import { t } from "../i18n/text.ts";
 import { axis, HEIGHT, onWidth, roleOf, roomy } from "../plot/frame.ts";
 import { tracesOf } from "../plot/traces.ts";
 import { colour, coloured } from "../theme.ts";
@@ -55,8 +56,8 @@ export function ComparePlot({ channel, unit, stretches }: { channel: string; uni
   const peaks = laid.map((one) => figure(peakOf(one))).join(", ");
   return (
     <figure class="plot">
-      <figcaption><b>{wordsOf(channel)}</b><span class="quiet">{peaks ? `largest ${peaks} ${unit}` : "…"}</span></figcaption>
-      <div class="canvas" ref={place} role="img" aria-label={`${wordsOf(channel)} of runs ${stretches.map((one) => one.run).join(", ")} from the step; largest ${peaks} ${unit}`} />
+      <figcaption><b>{wordsOf(channel)}</b><span class="quiet">{peaks ? t("largest {peaks} {unit}", { peaks, unit }) : "…"}</span></figcaption>
+      <div class="canvas" ref={place} role="img" aria-label={t("{channel} of runs {runs} from the step; largest {peaks} {unit}", { channel: wordsOf(channel), runs: stretches.map((one) => one.run).join(", "), peaks, unit })} />
     </figure>
   );
 }

@@ -7,9 +7,12 @@ import type { Comparison, FoundRuns, Run, RunView } from "../api/types.ts";
 import { to } from "../addresses.ts";
 import { useData } from "../data.ts";
 import { figure, moment, percent } from "../format.ts";
+import { English } from "../i18n/english.tsx";
+import { t, tx } from "../i18n/text.ts";
 import { roleOf } from "../plot/frame.ts";
 import { useQuery } from "../router.ts";
-import { Badge, Heading, Scroll, Section } from "../ui/parts.tsx";
+import { kindInWords } from "../ui/kinds.ts";
+import { Badge, linkTo, Heading, Scroll, Section } from "../ui/parts.tsx";
 import { ComparePlot, stretchOf } from "./compare-plot.tsx";
 
 const CHANNELS = ["shaft_torque_nm", "motor_speed_rad_s", "motor_torque_nm"];
@@ -25,14 +28,14 @@ export function Compare(): JSX.Element {
   };
   return (
     <>
-      <Heading>Compare runs</Heading>
+      <Heading>{t("Compare runs")}</Heading>
       <Choose runs={runs} onChange={set} />
-      {runs.length >= 2 ? <Compared key={runs.join()} runs={runs} query={query} setQuery={setQuery} /> : <p class="quiet">Choose two runs or more of one plan; in the <a href={to.list("runs")}>table of runs</a> they can be ticked.</p>}
+      {runs.length >= 2 ? <Compared key={runs.join()} runs={runs} query={query} setQuery={setQuery} /> : <p class="quiet">{tx("Choose two runs or more of one plan; in the <a>table of runs</a> they can be ticked.", { a: linkTo(to.list("runs")) })}</p>}
     </>
   );
 }
 
-const named = (run: Run): string => `${run.id}: ${run.title || run.plan}, ${run.verdict ?? run.state}${run.ended_at ? `, ${moment(run.ended_at)}` : ""}`;
+const named = (run: Run): string => `${run.id}: ${run.title || run.plan}, ${kindInWords(run.verdict ?? run.state)}${run.ended_at ? `, ${moment(run.ended_at)}` : ""}`;
 
 function Choose({ runs, onChange }: { runs: number[]; onChange: (runs: number[]) => void }): JSX.Element {
   const first = useData<Run>(runs[0] ? `/runs/${runs[0]}` : null).data;
@@ -41,14 +44,14 @@ function Choose({ runs, onChange }: { runs: number[]; onChange: (runs: number[])
   return (
     <div class="row small">
       {runs.map((run, at) => (
-        <span key={run} class="chip"><span class={`swatch ${roleOf(at)}`} /><a href={to.run(run)}>{`run ${run}`}</a>
-          <button type="button" class="plain" aria-label={`Leave out run ${run}`} onClick={() => onChange(runs.filter((one) => one !== run))}>×</button>
+        <span key={run} class="chip"><span class={`swatch ${roleOf(at)}`} /><a href={to.run(run)}>{t("run {run}", { run })}</a>
+          <button type="button" class="plain" aria-label={t("Leave out run {run}", { run })} onClick={() => onChange(runs.filter((one) => one !== run))}>×</button>
         </span>
       ))}
       {runs.length < MOST ? (
-        <label>{runs.length ? "and " : "Run "}
+        <label>{runs.length ? t("and") : t("Run")}{" "}
           <select value="" onChange={(event) => onChange([...runs, Number(event.currentTarget.value)])}>
-            <option value="" disabled>choose …</option>
+            <option value="" disabled>{t("choose …")}</option>
             {offered.map((run) => <option key={run.id} value={run.id}>{named(run)}</option>)}
           </select>
         </label>
@@ -99,8 +102,8 @@ function segmentsOf(views: RunView[]): Common[] {
 
 function Compared({ runs, query, setQuery }: { runs: number[]; query: URLSearchParams; setQuery: (query: URLSearchParams) => void }): JSX.Element {
   const { views, pairs, error } = useFound(runs);
-  if (error) return <p class="bad" role="alert">{error}</p>;
-  if (!views) return <p class="quiet">Loading the runs …</p>;
+  if (error) return <p class="bad" role="alert"><English>{error}</English></p>;
+  if (!views) return <p class="quiet">{t("Loading the runs …")}</p>;
   const segments = segmentsOf(views);
   const segment = segments.find((one) => one.id === query.get("segment")) ?? segments[0];
   const near = query.get("stretch") !== "whole";
@@ -113,15 +116,15 @@ function Compared({ runs, query, setQuery }: { runs: number[]; query: URLSearchP
   const stretches = segment ? views.map((view) => stretchOf(view, segment.id, near)).filter((one) => one !== null) : [];
   return (
     <>
-      {pairs ? pairs.map((pair) => <Lead key={pair.other.id} pair={pair} />) : <p class="quiet">Comparing criteria and inputs …</p>}
+      {pairs ? pairs.map((pair) => <Lead key={pair.other.id} pair={pair} />) : <p class="quiet">{t("Comparing criteria and inputs …")}</p>}
       {pairs ? <Differences pairs={pairs} /> : null}
       {segment ? (
-        <Section title="Traces from the step" label="traces">
+        <Section title={t("Traces from the step")} label="traces">
           <div class="row small">
-            <label>Segment <select value={segment.id} onChange={(event) => put("segment", event.currentTarget.value)}>{segments.map((one) => <option key={one.id}>{one.id}</option>)}</select></label>
-            <label>Stretch <select value={near ? "near" : "whole"} onChange={(event) => put("stretch", event.currentTarget.value)}><option value="near">first 2 s</option><option value="whole">whole segment</option></select></label>
-            <label>Channel <select value="" onChange={(event) => put("channels", [...channels, event.currentTarget.value].join(","))}><option value="" disabled>add …</option>{segment.channels.filter((one) => !channels.includes(one)).map((one) => <option key={one}>{one}</option>)}</select></label>
-            {channels.length ? <button type="button" class="plain" onClick={() => put("channels", channels.slice(0, -1).join(","))}>Leave out the last</button> : null}
+            <label>{t("Segment")} <select value={segment.id} onChange={(event) => put("segment", event.currentTarget.value)}>{segments.map((one) => <option key={one.id}>{one.id}</option>)}</select></label>
+            <label>{t("Stretch")} <select value={near ? "near" : "whole"} onChange={(event) => put("stretch", event.currentTarget.value)}><option value="near">{t("first 2 s")}</option><option value="whole">{t("whole segment")}</option></select></label>
+            <label>{t("Channel")} <select value="" onChange={(event) => put("channels", [...channels, event.currentTarget.value].join(","))}><option value="" disabled>{t("add …")}</option>{segment.channels.filter((one) => !channels.includes(one)).map((one) => <option key={one}>{one}</option>)}</select></label>
+            {channels.length ? <button type="button" class="plain" onClick={() => put("channels", channels.slice(0, -1).join(","))}>{t("Leave out the last")}</button> : null}
           </div>
           <div class="plots part">{channels.map((channel) => <ComparePlot key={channel} channel={channel} unit={views[0]?.channels[channel] ?? ""} stretches={stretches} />)}</div>
         </Section>
@@ -135,8 +138,8 @@ function Lead({ pair }: { pair: Comparison }): JSX.Element {
   const { first, other, distance, notes } = pair;
   return (
     <>
-      <p>{distance === null ? `No criterion has a value in both runs ${first.id} and ${other.id}.` : `Mean difference of the criteria of run ${other.id} from run ${first.id}: ${percent(distance, 1)}.`}</p>
-      {notes.map((note) => <p class="quiet" key={note}>{note}</p>)}
+      <p>{distance === null ? t("No criterion has a value in both runs {first} and {other}.", { first: first.id, other: other.id }) : t("Mean difference of the criteria of run {other} from run {first}: {share}.", { other: other.id, first: first.id, share: percent(distance, 1) })}</p>
+      {notes.map((note) => <p class="quiet" key={note}><English>{note}</English></p>)}
     </>
   );
 }
@@ -152,12 +155,12 @@ function Differences({ pairs }: { pairs: Comparison[] }): JSX.Element {
     }
   }
   return (
-    <Section title="Different inputs" label="inputs">
-      {rows.size === 0 ? <p class="quiet">Controllers, model, bench and plan values are identical.</p> : (
-        <Scroll label="Different inputs">
+    <Section title={t("Different inputs")} label="inputs">
+      {rows.size === 0 ? <p class="quiet">{t("Controllers, model, bench and plan values are identical.")}</p> : (
+        <Scroll label={t("Different inputs")}>
           <table>
-            <thead><tr><th scope="col">of</th><th scope="col">value</th><th scope="col" class="number">{`run ${first}`}</th>{pairs.map((pair) => <th key={pair.other.id} scope="col" class="number">{`run ${pair.other.id}`}</th>)}</tr></thead>
-            <tbody>{[...rows].map(([key, row]) => <tr key={key}><th scope="row">{row.kind}</th><td>{row.name}</td><td class="number">{row.first}</td>{pairs.map((pair) => <td key={pair.other.id} class="number">{row.others.get(pair.other.id) ?? "the same"}</td>)}</tr>)}</tbody>
+            <thead><tr><th scope="col">{t("kind")}</th><th scope="col">{t("value")}</th><th scope="col" class="number">{t("run {run}", { run: first })}</th>{pairs.map((pair) => <th key={pair.other.id} scope="col" class="number">{t("run {run}", { run: pair.other.id })}</th>)}</tr></thead>
+            <tbody>{[...rows].map(([key, row]) => <tr key={key}><th scope="row"><English>{row.kind}</English></th><td>{row.name}</td><td class="number">{row.first}</td>{pairs.map((pair) => <td key={pair.other.id} class="number">{row.others.get(pair.other.id) ?? t("the same")}</td>)}</tr>)}</tbody>
           </table>
         </Scroll>
       )}
@@ -168,10 +171,10 @@ function Differences({ pairs }: { pairs: Comparison[] }): JSX.Element {
 function ComparedCriteria({ pairs }: { pairs: Comparison[] }): JSX.Element {
   const rows = pairs[0]?.criteria ?? [], first = pairs[0]?.first.id ?? 0;
   return (
-    <Section title="Criteria" label="criteria">
-      <Scroll label="Criteria of the runs">
+    <Section title={t("Criteria")} label="criteria">
+      <Scroll label={t("Criteria of the runs")}>
         <table>
-          <thead><tr><th scope="col">criterion</th><th scope="col" class="number">limit</th><th scope="col" class="number">{`run ${first}`}</th>{pairs.map((pair) => <th key={pair.other.id} scope="col" class="number">{`run ${pair.other.id}`}</th>)}</tr></thead>
+          <thead><tr><th scope="col">{t("criterion")}</th><th scope="col" class="number">{t("limit")}</th><th scope="col" class="number">{t("run {run}", { run: first })}</th>{pairs.map((pair) => <th key={pair.other.id} scope="col" class="number">{t("run {run}", { run: pair.other.id })}</th>)}</tr></thead>
           <tbody>
             {rows.map((row) => (
               <tr key={row.id}><th scope="row">{row.title || row.id}{row.title ? <span class="reason">{row.id}</span> : null}</th><td class="number">{row.limit || "–"}</td>

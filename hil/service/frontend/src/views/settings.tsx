@@ -1,4 +1,4 @@
-// Settings: colours of this browser; of the service its state, agents, and the tokens that let people in.
+// Settings: language and colours of this browser; of the service its state, agents, and the tokens that let people in.
 
 import type { JSX } from "preact";
 import { useState } from "preact/hooks";
@@ -6,32 +6,49 @@ import { ask, post } from "../api/client.ts";
 import { ROLES, type Agent, type Health, type KeptApart, type TokenData, type TokenMade } from "../api/types.ts";
 import { attempt, useData } from "../data.ts";
 import { duration } from "../format.ts";
+import { English } from "../i18n/english.tsx";
+import { chooseLanguage, chosenLanguage, LANGUAGES, type Language } from "../i18n/language.ts";
+import { t, tx } from "../i18n/text.ts";
 import { useMay, useMe } from "../session.ts";
 import { useStore } from "../store.ts";
-import { chooseTheme, theme, THEMES } from "../theme.ts";
+import { chooseTheme, theme, THEME_NAMES, THEMES } from "../theme.ts";
 import { People } from "./team/people.tsx";
+import { kindInWords } from "../ui/kinds.ts";
 import { Facts, Heading, Loaded, Moment, Scroll, Section } from "../ui/parts.tsx";
 
 export function Settings(): JSX.Element {
   const may = useMay(), me = useMe();
   return (
     <>
-      <Heading>Settings</Heading>
-      <Section title="Colours" label="colours"><Colours /></Section>
-      <Section title="Service" label="service"><ServiceState /></Section>
-      <Section title="Agents" label="agents"><Agents /></Section>
+      <Heading>{t("Settings")}</Heading>
+      <Section title={t("Language")} label="language"><Languages /></Section>
+      <Section title={t("Colours")} label="colours"><Colours /></Section>
+      <Section title={t("Service")} label="service"><ServiceState /></Section>
+      <Section title={t("Agents")} label="agents"><Agents /></Section>
       {may("admin") ? <People /> : null}
-      {may("admin") && me.tokens ? <Section title="Tokens" label="tokens"><Tokens /></Section> : null}
-      {may("admin") && !me.tokens ? <p class="quiet">This service asks for no tokens. The first one is made on its machine: <code>hil serve --add-token NAME=admin</code></p> : null}
+      {may("admin") && me.tokens ? <Section title={t("Tokens")} label="tokens"><Tokens /></Section> : null}
+      {may("admin") && !me.tokens ? <p class="quiet">{tx("This service asks for no tokens. The first one is made on its machine: {command}", { command: <code>hil serve --add-token NAME=admin</code> })}</p> : null}
     </>
+  );
+}
+
+function Languages(): JSX.Element {
+  return (
+    <label>
+      <span class="hidden">{t("Language")}</span>
+      <select value={chosenLanguage} onChange={(event) => chooseLanguage(event.currentTarget.value as Language | "")}>
+        <option value="">{t("as the browser")}</option>
+        {Object.entries(LANGUAGES).map(([tag, name]) => <option key={tag} value={tag} lang={tag}>{name}</option>)}
+      </select>
+    </label>
   );
 }
 
 function Colours(): JSX.Element {
   const chosen = useStore(theme);
   return (
-    <fieldset class="row plainly"><legend class="hidden">Colours</legend>
-      {THEMES.map((one) => <label key={one}><input type="radio" name="theme" checked={one === chosen} onChange={() => chooseTheme(one)} /> {one === "system" ? "as the system" : one}</label>)}
+    <fieldset class="row plainly"><legend class="hidden">{t("Colours")}</legend>
+      {THEMES.map((one) => <label key={one}><input type="radio" name="theme" checked={one === chosen} onChange={() => chooseTheme(one)} /> {THEME_NAMES[one]}</label>)}
     </fieldset>
   );
 }
@@ -39,18 +56,18 @@ function Colours(): JSX.Element {
 function ServiceState(): JSX.Element {
   const health = useData<Health>("/health", 10_000), apart = useData<KeptApart[]>("/kept-apart").data ?? [];
   return (
-    <Loaded of={health} what="the service's state">
+    <Loaded of={health} what={t("the service's state")}>
       {(found) => (
         <>
           <Facts>
             {[
-              ["version", found.version], ["up for", duration(found.up_s)],
-              ["audit log", found.audit_problem ? <span class="bad">{found.audit_problem}</span> : "unchanged"],
-              ["store", found.store_problem ? <span class="bad">{found.store_problem}</span> : `${found.runs_not_stored ?? 0} runs and ${found.results_not_stored ?? 0} results wait for it`],
-              ["stop post", found.stop_url ? <code>{found.stop_url}</code> : <span class="bad">not available</span>],
+              [t("version"), found.version], [t("up for"), duration(found.up_s)],
+              [t("audit log"), found.audit_problem ? <span class="bad"><English>{found.audit_problem}</English></span> : t("unchanged")],
+              [t("store"), found.store_problem ? <span class="bad"><English>{found.store_problem}</English></span> : t("waiting for it: {runs} runs, {results} results", { runs: found.runs_not_stored ?? 0, results: found.results_not_stored ?? 0 })],
+              [t("stop post"), found.stop_url ? <code>{found.stop_url}</code> : <span class="bad">{t("not available")}</span>],
             ]}
           </Facts>
-          {apart.map((one) => <p key={one.file} class="bad">{`${one.kind} ${one.name} is kept apart: ${one.why}. ${one.fix}`}</p>)}
+          {apart.map((one) => <p key={one.file} class="bad">{tx("{name} is kept apart: {why}", { name: `${kindInWords(one.kind)} ${one.name}`, why: <English>{`${one.why}. ${one.fix}`}</English> })}</p>)}
         </>
       )}
     </Loaded>
@@ -60,10 +77,10 @@ function ServiceState(): JSX.Element {
 function Agents(): JSX.Element {
   const agents = useData<Agent[]>("/agents", 5000);
   return (
-    <Loaded of={agents} what="agents">
+    <Loaded of={agents} what={t("agents")}>
       {(all) => all.length
-        ? <Scroll label="Agents"><table><tbody>{all.map((one) => <tr key={`${one.name} ${one.machine}`}><th scope="row">{one.name}</th><td>{one.machine}</td><td>{one.version}</td><td>{one.connected ? "connected" : "away"}</td></tr>)}</tbody></table></Scroll>
-        : <p class="quiet">No agent has registered.</p>}
+        ? <Scroll label={t("Agents")}><table><tbody>{all.map((one) => <tr key={`${one.name} ${one.machine}`}><th scope="row">{one.name}</th><td>{one.machine}</td><td>{one.version}</td><td>{one.connected ? t("connected") : t("away")}</td></tr>)}</tbody></table></Scroll>
+        : <p class="quiet">{t("No agent has registered.")}</p>}
     </Loaded>
   );
 }
@@ -78,24 +95,24 @@ function Tokens(): JSX.Element {
     tokens.again();
   };
   const revoke = async (token: TokenData) => {
-    if (!confirm(`Revoke the token of ${token.name}?`)) return;
+    if (!confirm(t("Revoke the token of {name}?", { name: token.name }))) return;
     await attempt(() => ask("DELETE", `/tokens/${token.id}`));
     tokens.again();
   };
   return (
     <>
       <form class="row" onSubmit={(event) => void make(event)}>
-        <label class="field">Name<input required maxLength={100} value={name} onInput={(event) => setName(event.currentTarget.value)} /></label>
-        <label class="field">Role<select value={role} onChange={(event) => setRole(event.currentTarget.value)}>{[...ROLES, "agent"].map((one) => <option key={one}>{one}</option>)}</select></label>
-        <label class="field">Days<input type="number" min={1} max={3650} required value={days} onInput={(event) => setDays(event.currentTarget.value)} /></label>
-        <button type="submit" class="main">Make a token</button>
+        <label class="field">{t("Name")}<input required maxLength={100} value={name} onInput={(event) => setName(event.currentTarget.value)} /></label>
+        <label class="field">{t("Role")}<select value={role} onChange={(event) => setRole(event.currentTarget.value)}>{[...ROLES, "agent"].map((one) => <option key={one} value={one}>{kindInWords(one)}</option>)}</select></label>
+        <label class="field">{t("Days")}<input type="number" min={1} max={3650} required value={days} onInput={(event) => setDays(event.currentTarget.value)} /></label>
+        <button type="submit" class="main">{t("Make a token")}</button>
       </form>
-      {made ? <p class="message" role="status">{`The token of ${made.token.name}, shown this once: `}<code>{made.secret}</code></p> : null}
-      <Loaded of={tokens} what="tokens">
+      {made ? <p class="message" role="status">{tx("The token of {name}, shown this once: {secret}", { name: made.token.name, secret: <code>{made.secret}</code> })}</p> : null}
+      <Loaded of={tokens} what={t("tokens")}>
         {(all) => (
-          <Scroll label="Tokens"><table>
-            <thead><tr><th scope="col">name</th><th scope="col">role</th><th scope="col">made</th><th scope="col">valid until</th><th scope="col"><span class="hidden">actions</span></th></tr></thead>
-            <tbody>{all.map((one) => <tr key={one.id}><th scope="row">{one.name}</th><td>{one.role}</td><td><Moment at={one.made_at} /></td><td>{one.revoked_at ? <>revoked <Moment at={one.revoked_at} /></> : <Moment at={one.expires_at} />}</td><td>{one.revoked_at ? null : <button type="button" aria-label={`Revoke the token of ${one.name}`} onClick={() => void revoke(one)}>Revoke</button>}</td></tr>)}</tbody>
+          <Scroll label={t("Tokens")}><table>
+            <thead><tr><th scope="col">{t("name")}</th><th scope="col">{t("role")}</th><th scope="col">{t("made")}</th><th scope="col">{t("valid until")}</th><th scope="col"><span class="hidden">{t("actions")}</span></th></tr></thead>
+            <tbody>{all.map((one) => <tr key={one.id}><th scope="row">{one.name}</th><td>{kindInWords(one.role)}</td><td><Moment at={one.made_at} /></td><td>{one.revoked_at ? tx("revoked {moment}", { moment: <Moment at={one.revoked_at} /> }) : <Moment at={one.expires_at} />}</td><td>{one.revoked_at ? null : <button type="button" aria-label={t("Revoke the token of {name}", { name: one.name })} onClick={() => void revoke(one)}>{t("Revoke")}</button>}</td></tr>)}</tbody>
           </table></Scroll>
         )}
       </Loaded>

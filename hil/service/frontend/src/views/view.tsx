@@ -2,6 +2,7 @@
 
 import type { JSX } from "preact";
 import { to, type Place } from "../addresses.ts";
+import { t } from "../i18n/text.ts";
 import { Heading } from "../ui/parts.tsx";
 import { Audit } from "./audit.tsx";
 import { BenchView } from "./bench.tsx";
@@ -10,13 +11,15 @@ import { CampaignView } from "./campaigns/campaign.tsx";
 import { Campaigns } from "./campaigns/campaigns.tsx";
 import { Compare } from "./compare.tsx";
 import { Design } from "./design/design.tsx";
-import { Controllers, ControllerView, Models, ModelView } from "./given.tsx";
+import { BenchFiles, BenchFileView, Controllers, ControllerView, Models, ModelView } from "./given/given.tsx";
 import { Panel } from "./panel.tsx";
 import { Plans, PlanView } from "./plans/plans.tsx";
+import { Recordings, RecordingView } from "./recordings/recordings.tsx";
 import { RunView } from "./runs/run.tsx";
 import { Runs } from "./runs/runs.tsx";
 import { Settings } from "./settings.tsx";
 import { Diagnoses, DiagnosisView } from "./studies/diagnoses.tsx";
+import { Wall } from "./wall.tsx";
 import { TrendsView } from "./trends/trends-view.tsx";
 import { Identifications, IdentificationView } from "./studies/identifications.tsx";
 
@@ -25,6 +28,7 @@ export function View({ place }: { place: Place }): JSX.Element {
     case "benches": return <Benches />;
     case "bench": return <BenchView key={place.bench} bench={place.bench} />;
     case "panel": return <Panel key={place.bench} bench={place.bench} />;
+    case "wall": return <Wall key={place.bench} bench={place.bench} />;
     case "runs": return <Runs />;
     case "run": return <RunView key={place.run} run={place.run} />;
     case "compare": return <Compare />;
@@ -35,7 +39,11 @@ export function View({ place }: { place: Place }): JSX.Element {
     case "model": return <ModelView key={place.name} name={place.name} />;
     case "controllers": return <Controllers />;
     case "controller": return <ControllerView key={place.name} name={place.name} />;
+    case "bench-files": return <BenchFiles />;
+    case "bench-file": return <BenchFileView key={place.name} name={place.name} />;
     case "design": return <Design />;
+    case "recordings": return <Recordings />;
+    case "recording": return <RecordingView key={place.id} id={place.id} />;
     case "identifications": return <Identifications />;
     case "identification": return <IdentificationView key={place.id} id={place.id} />;
     case "diagnoses": return <Diagnoses />;
@@ -51,8 +59,8 @@ export function View({ place }: { place: Place }): JSX.Element {
 function Missing({ path }: { path: string }): JSX.Element {
   return (
     <>
-      <Heading>No such page</Heading>
-      <p>{`There is nothing at ${path}. `}<a href={to.list("benches")}>All benches</a></p>
+      <Heading>{t("No such page")}</Heading>
+      <p>{t("There is nothing at {path}.", { path })} <a href={to.list("benches")}>{t("All benches")}</a></p>
     </>
   );
 }

@@ -6,6 +6,7 @@ import { post } from "../../api/client.ts";
 import type { Campaign, CampaignExample } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
+import { t } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { CampaignForm } from "./form-fields.tsx";
 import { campaignText, NOTHING, type Chosen, type Property } from "./campaign-form.ts";
@@ -29,17 +30,17 @@ export function BeginCampaign(): JSX.Element {
   };
   return (
     <form class="card" onSubmit={(event) => void begin(event)}>
-      <label class="field">Campaign
+      <label class="field">{t("Campaign")}
         <select value={from} onChange={(event) => choose(event.currentTarget.value)}>
-          <option value={FORM}>by this form</option>
-          {examples.map((one) => <option key={one.name} value={one.name}>{`example: ${one.title || one.name}`}</option>)}
-          <option value={OWN}>a file of your own</option>
+          <option value={FORM}>{t("by this form")}</option>
+          {examples.map((one) => <option key={one.name} value={one.name}>{t("example: {name}", { name: one.title || one.name })}</option>)}
+          <option value={OWN}>{t("a file of your own")}</option>
         </select>
       </label>
       {byForm && schema ? <CampaignForm schema={schema} chosen={chosen} onChange={setChosen} /> : null}
       {from === OWN ? <OwnFiles onText={setText} onBeside={setBeside} /> : null}
-      <label class="field">Content<textarea rows={byForm ? 6 : 14} spellcheck={false} required maxLength={200_000} readOnly={byForm} value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
-      <button type="submit" class="main">Simulate</button>
+      <label class="field">{t("Content")}<textarea rows={byForm ? 6 : 14} spellcheck={false} required maxLength={200_000} readOnly={byForm} value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
+      <button type="submit" class="main">{t("Simulate")}</button>
     </form>
   );
 }
@@ -48,8 +49,8 @@ function OwnFiles({ onText, onBeside }: { onText: (text: string) => void; onBesi
   const read = async (files: FileList | null): Promise<[string, string][]> => Promise.all([...(files ?? [])].map(async (file): Promise<[string, string]> => [file.name, await file.text()]));
   return (
     <div class="row">
-      <label class="field">Campaign file<input type="file" accept=".yaml,.yml" onChange={(event) => void read(event.currentTarget.files).then((all) => onText(all[0]?.[1] ?? ""))} /></label>
-      <label class="field">Files of plan, model and controllers that the service lacks<input type="file" accept=".yaml,.yml,.toml" multiple onChange={(event) => void read(event.currentTarget.files).then((all) => onBeside(Object.fromEntries(all)))} /></label>
+      <label class="field">{t("Campaign file")}<input type="file" accept=".yaml,.yml" onChange={(event) => void read(event.currentTarget.files).then((all) => onText(all[0]?.[1] ?? ""))} /></label>
+      <label class="field">{t("Files of plan, model and controllers that the service lacks")}<input type="file" accept=".yaml,.yml,.toml" multiple onChange={(event) => void read(event.currentTarget.files).then((all) => onBeside(Object.fromEntries(all)))} /></label>
     </div>
   );
 }

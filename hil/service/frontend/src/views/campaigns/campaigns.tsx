@@ -4,6 +4,7 @@ import type { JSX } from "preact";
 import type { Campaign } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { useData } from "../../data.ts";
+import { t } from "../../i18n/text.ts";
 import { useMay } from "../../session.ts";
 import { Badge, Heading, Loaded, Scroll, Section } from "../../ui/parts.tsx";
 import { BeginCampaign } from "./begin-campaign.tsx";
@@ -15,22 +16,22 @@ export function Campaigns(): JSX.Element {
   const campaigns = useData<Campaign[]>("/campaigns", AGAIN_MS), may = useMay();
   return (
     <>
-      <Heading>Campaigns</Heading>
-      <Loaded of={campaigns} what="campaigns">
+      <Heading>{t("Campaigns")}</Heading>
+      <Loaded of={campaigns} what={t("campaigns")}>
         {(all) => all.length ? (
-          <Scroll label="Campaigns"><table class="campaigns">
-            <thead><tr><th scope="col" class="number">number</th><th scope="col">campaign</th><th scope="col">state</th><th scope="col">simulated</th><th scope="col">passes</th>{may("engineer") ? <th scope="col"><span class="hidden">actions</span></th> : null}</tr></thead>
+          <Scroll label={t("Campaigns")}><table class="campaigns">
+            <thead><tr><th scope="col" class="number">{t("number")}</th><th scope="col">{t("campaign")}</th><th scope="col">{t("state")}</th><th scope="col">{t("simulated")}</th><th scope="col">{t("passes")}</th>{may("engineer") ? <th scope="col"><span class="hidden">{t("actions")}</span></th> : null}</tr></thead>
             <tbody>{all.map((one) => <Row key={one.id} campaign={one} onRemoved={campaigns.again} />)}</tbody>
           </table></Scroll>
-        ) : <p class="quiet">There is no campaign yet.</p>}
+        ) : <p class="quiet">{t("There is no campaign yet.")}</p>}
       </Loaded>
-      {may("engineer") ? <Section title="Simulate a plan on many cars" label="begin"><BeginCampaign /></Section> : null}
+      {may("engineer") ? <Section title={t("Simulate a plan on many cars")} label="begin"><BeginCampaign /></Section> : null}
     </>
   );
 }
 
 function Row({ campaign, onRemoved }: { campaign: Campaign; onRemoved: () => void }): JSX.Element {
-  const about = [`${campaign.plan} on ${campaign.model}, by ${campaign.requested_by}`, campaign.place, campaign.reason?.split("\n")[0]].filter(Boolean).join("; ");
+  const about = [t("{plan} on {model}, by {person}", { plan: campaign.plan, model: campaign.model, person: campaign.requested_by }), campaign.place, campaign.reason?.split("\n")[0]].filter(Boolean).join("; ");
   return (
     <tr>
       <td class="number"><a href={to.campaign(campaign.id)}>{campaign.id}</a></td>

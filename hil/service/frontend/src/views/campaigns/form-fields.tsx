@@ -3,6 +3,8 @@
 import type { JSX } from "preact";
 import type { Bench, Controller, Model, Plan } from "../../api/types.ts";
 import { useData } from "../../data.ts";
+import { English } from "../../i18n/english.tsx";
+import { t } from "../../i18n/text.ts";
 import { inWords } from "../../ui/parts.tsx";
 import { boundsOf, isNumber, plainKeys, type Chosen, type Property, type Varied } from "./campaign-form.ts";
 
@@ -23,9 +25,9 @@ export function CampaignForm({ schema, chosen, onChange }: Options): JSX.Element
         {plainKeys(schema).map((name) => (
           <Plain key={name} name={name} property={schema.properties?.[name] ?? {}} value={chosen.plain[name] ?? ""} offered={offered.plain[name]} required={name === "name" || name === "plan"} onChange={(text) => setPlain(name, text)} />
         ))}
-        <label class="field">{"Criteria that count, all if none"}<input value={(chosen.lists["criteria"] ?? []).join(", ")} placeholder="phase_0kmh.peak_shaft_torque" autocomplete="off" onChange={(event) => setList("criteria", event.currentTarget.value.split(",").map((one) => one.trim()).filter(Boolean))} /></label>
+        <label class="field">{t("Criteria that count, all if none")}<input value={(chosen.lists["criteria"] ?? []).join(", ")} placeholder="phase_0kmh.peak_shaft_torque" autocomplete="off" onChange={(event) => setList("criteria", event.currentTarget.value.split(",").map((one) => one.trim()).filter(Boolean))} /></label>
       </div>
-      <Ticks legend="Controllers to compare; the plan's own if none" all={offered.controllers} chosen={chosen.lists["controllers"] ?? []} onChange={(all) => setList("controllers", all)} />
+      <Ticks legend={t("Controllers to compare; the plan's own if none")} all={offered.controllers} chosen={chosen.lists["controllers"] ?? []} onChange={(all) => setList("controllers", all)} />
       <Tolerance of={schema.properties?.["tolerance"] ?? {}} chosen={chosen.tolerance} drawn={drawn} onChange={(tolerance) => onChange({ ...chosen, tolerance })} />
       <Vary rows={chosen.vary} onChange={(vary) => onChange({ ...chosen, vary })} />
     </>
@@ -51,18 +53,22 @@ function useOffered(): Offered {
   };
 }
 
+const FIELDS: Record<string, string> = {
+  name: t("Name"), title: t("Title"), description: t("Description"), plan: t("Plan"), bench: t("Bench"), model: t("Model"), controller: t("Controller"), draws: t("Draws"), seed: t("Seed"), pass_share: t("Pass share"),
+};
+
 function Plain({ name, property, value, offered, required, onChange }: { name: string; property: Property; value: string; offered: string[] | undefined; required: boolean; onChange: (text: string) => void }): JSX.Element {
   const usual = property.default === undefined || property.default === null || property.default === "" ? "" : String(property.default), bounds = boundsOf(property);
   const about = `about-${name}`, described = property.description && !offered ? { "aria-describedby": about } : {};
   const take = (event: { currentTarget: HTMLInputElement | HTMLSelectElement }) => onChange(event.currentTarget.value);
   return (
-    <div><label class="field">{inWords(name).replace(/^./, (letter) => letter.toUpperCase())}
+    <div><label class="field">{FIELDS[name] ?? inWords(name).replace(/^./, (letter) => letter.toUpperCase())}
       {offered
-        ? <select value={value} required={required} onChange={take}><option value="">{usual || (required ? "choose …" : "the usual one")}</option>{offered.map((one) => <option key={one}>{one}</option>)}</select>
+        ? <select value={value} required={required} onChange={take}><option value="">{usual || (required ? t("choose …") : t("the usual one"))}</option>{offered.map((one) => <option key={one}>{one}</option>)}</select>
         : isNumber(property)
           ? <input type="number" step="any" {...described} {...bounds} placeholder={usual} value={value} onInput={take} />
           : <input required={required} {...described} {...(name === "name" ? { pattern: "[A-Za-z0-9][A-Za-z0-9_.\\-]*" } : {})} placeholder={usual} autocomplete="off" value={value} onInput={take} />}
-      </label>{property.description && !offered ? <span class="reason" id={about}>{property.description}</span> : null}
+      </label>{property.description && !offered ? <span class="reason" id={about}><English>{property.description}</English></span> : null}
     </div>
   );
 }
@@ -79,13 +85,13 @@ function Tolerance({ of, chosen, drawn, onChange }: { of: Property; chosen: Reco
   const set = (name: string, text: string) => onChange({ ...chosen, [name]: text });
   return (
     <details>
-      <summary>{`What differs from car to car${drawn ? "" : " (with draws)"}`}</summary>
+      <summary>{drawn ? t("What differs from car to car") : t("What differs from car to car (with draws)")}</summary>
       <div class="fields">
         {Object.entries(of.properties ?? {}).map(([name, property]) => (
           <label class={property.type === "boolean" ? "tick" : "field"} key={name}>
             {property.type === "boolean"
-              ? <><input type="checkbox" checked={chosen[name] === "true"} onChange={(event) => set(name, String(event.currentTarget.checked))} />{inWords(name)}</>
-              : <>{`${inWords(name)}${property.description ? `, ${property.description}` : ""}`}<input type="number" step="any" {...boundsOf(property)} value={chosen[name] ?? ""} onInput={(event) => set(name, event.currentTarget.value)} /></>}
+              ? <><input type="checkbox" checked={chosen[name] === "true"} onChange={(event) => set(name, String(event.currentTarget.checked))} /><English>{inWords(name)}</English></>
+              : <><English>{`${inWords(name)}${property.description ? `, ${property.description}` : ""}`}</English><input type="number" step="any" {...boundsOf(property)} value={chosen[name] ?? ""} onInput={(event) => set(name, event.currentTarget.value)} /></>}
           </label>
         ))}
       </div>
@@ -99,17 +105,17 @@ function Vary({ rows, onChange }: { rows: Varied[]; onChange: (rows: Varied[]) =
   const set = (at: number, changed: Partial<Varied>) => onChange(rows.map((one, number) => (number === at ? { ...one, ...changed } : one)));
   return (
     <details>
-      <summary>Values that are tried one after the other</summary>
+      <summary>{t("Values that are tried one after the other")}</summary>
       {rows.map((row, at) => (
         <div class="row" key={at}>
-          <label class="field">Name<input placeholder="model.vehicle_inertia" autocomplete="off" pattern="(controller|model|plan)\.[^.]+|effect\.[^.]+\.[^.]+" title="controller.NAME, model.NAME, effect.ID.NAME or plan.NAME" value={row.name} onInput={(event) => set(at, { name: event.currentTarget.value })} /></label>
-          <label class="field">from<input type="number" step="any" value={row.from} onInput={(event) => set(at, { from: event.currentTarget.value })} /></label>
-          <label class="field">to<input type="number" step="any" value={row.to} onInput={(event) => set(at, { to: event.currentTarget.value })} /></label>
-          <label class="field">in so many values<input type="number" min={2} max={100_000} value={row.count} onInput={(event) => set(at, { count: event.currentTarget.value })} /></label>
-          <button type="button" class="plain" onClick={() => onChange(rows.filter((_, number) => number !== at))}>Leave out</button>
+          <label class="field">{t("Name")}<input placeholder="model.vehicle_inertia" autocomplete="off" pattern="(controller|model|plan)\.[^.]+|effect\.[^.]+\.[^.]+" title="controller.NAME, model.NAME, effect.ID.NAME, plan.NAME" value={row.name} onInput={(event) => set(at, { name: event.currentTarget.value })} /></label>
+          <label class="field">{t("from")}<input type="number" step="any" value={row.from} onInput={(event) => set(at, { from: event.currentTarget.value })} /></label>
+          <label class="field">{t("to")}<input type="number" step="any" value={row.to} onInput={(event) => set(at, { to: event.currentTarget.value })} /></label>
+          <label class="field">{t("in so many values")}<input type="number" min={2} max={100_000} value={row.count} onInput={(event) => set(at, { count: event.currentTarget.value })} /></label>
+          <button type="button" class="plain" onClick={() => onChange(rows.filter((_, number) => number !== at))}>{t("Leave out")}</button>
         </div>
       ))}
-      <div class="row"><button type="button" onClick={() => onChange([...rows, EMPTY])}>Vary a value</button></div>
+      <div class="row"><button type="button" onClick={() => onChange([...rows, EMPTY])}>{t("Vary a value")}</button></div>
     </details>
   );
 }

@@ -4,9 +4,11 @@ import type { JSX } from "preact";
 import { useState } from "preact/hooks";
 import type { Model } from "../../api/types.ts";
 import { useData } from "../../data.ts";
+import { t } from "../../i18n/text.ts";
 import { useQuery } from "../../router.ts";
 import { useMay } from "../../session.ts";
-import { Heading, inWords, Section } from "../../ui/parts.tsx";
+import { kindInWords } from "../../ui/kinds.ts";
+import { Heading, Section } from "../../ui/parts.tsx";
 import { roleOf } from "../../plot/frame.ts";
 import { DraftFigures } from "./draft-figures.tsx";
 import { DraftForm } from "./draft-form.tsx";
@@ -20,7 +22,7 @@ const USUAL_MODEL = "three_inertia";
 
 export function Design(): JSX.Element {
   const may = useMay();
-  if (!may("engineer")) return <><Heading>Design a controller</Heading><p>Engineers design controllers.</p></>;
+  if (!may("engineer")) return <><Heading>{t("Design a controller")}</Heading><p>{t("Engineers design controllers.")}</p></>;
   return <Studio />;
 }
 
@@ -35,16 +37,16 @@ function Studio(): JSX.Element {
   const model = query.get("model") ?? models.find((one) => one.name === USUAL_MODEL)?.name ?? models[0]?.name ?? "";
   return (
     <>
-      <Heading>Design a controller</Heading>
+      <Heading>{t("Design a controller")}</Heading>
       <div class="row">
-        <label>{"Model "}
+        <label>{t("Model")}{" "}
           <select value={model} onChange={(event) => put("model", event.currentTarget.value)}>
             {models.some((one) => one.name === model) || !model ? null : <option>{model}</option>}
-            {models.map((one) => <option key={one.name} value={one.name}>{`${one.name}, ${inWords(one.kind)}${one.warning ? ", doubtful" : ""}`}</option>)}
+            {models.map((one) => <option key={one.name} value={one.name}>{[one.name, kindInWords(one.kind), one.warning ? t("doubtful") : ""].filter(Boolean).join(", ")}</option>)}
           </select>
         </label>
       </div>
-      {model ? <OnModel key={model} model={model} drafts={draftsFrom(query.get("d"))} onDrafts={(drafts) => put("d", draftsText(drafts))} /> : <p class="quiet">Loading models …</p>}
+      {model ? <OnModel key={model} model={model} drafts={draftsFrom(query.get("d"))} onDrafts={(drafts) => put("d", draftsText(drafts))} /> : <p class="quiet">{t("Loading models …")}</p>}
     </>
   );
 }
@@ -60,21 +62,21 @@ function OnModel({ model, drafts, onDrafts }: { model: string; drafts: Draft[]; 
   return (
     <>
       <div class="studio">
-        <section class="card" aria-label="Drafts">
-          <div class="row level small" role="group" aria-label="Draft that is moved">
+        <section class="card" aria-label={t("Drafts")}>
+          <div class="row level small" role="group" aria-label={t("Draft that is moved")}>
             {named.map(({ name, role }, number) => (
               <button type="button" key={number} aria-pressed={number === at} onClick={() => setShown(number)}><span class={`swatch ${role}`} />{` ${name}`}</button>
             ))}
-            {drafts.length < MOST_DRAFTS ? <button type="button" class="plain" onClick={add}>Add another</button> : null}
-            {drafts.length > 1 ? <button type="button" class="plain" onClick={() => { onDrafts(drafts.filter((_, number) => number !== at)); setShown(0); }}>{`Leave out ${nameOf(at, draft)}`}</button> : null}
+            {drafts.length < MOST_DRAFTS ? <button type="button" class="plain" onClick={add}>{t("Add another")}</button> : null}
+            {drafts.length > 1 ? <button type="button" class="plain" onClick={() => { onDrafts(drafts.filter((_, number) => number !== at)); setShown(0); }}>{t("Leave out {name}", { name: nameOf(at, draft) })}</button> : null}
           </div>
           <DraftForm draft={draft} resonance={found?.resonance_hz ?? null} onChange={change} />
         </section>
         <DraftPlots drafts={named} />
       </div>
-      <Section title="Margins and peaks" label="figures"><DraftFigures drafts={named} /></Section>
-      <Section title={`Keep ${nameOf(at, draft)}`} label="keep"><SaveController body={bodyOf(model, draft)} onSaved={setSaved} /></Section>
-      <Section title="Use a controller in a plan" label="use"><UseController key={saved} controller={saved} /></Section>
+      <Section title={t("Margins and peaks")} label="figures"><DraftFigures drafts={named} /></Section>
+      <Section title={t("Keep {name}", { name: nameOf(at, draft) })} label="keep"><SaveController body={bodyOf(model, draft)} onSaved={setSaved} /></Section>
+      <Section title={t("Use a controller in a plan")} label="use"><UseController key={saved} controller={saved} /></Section>
     </>
   );
 }

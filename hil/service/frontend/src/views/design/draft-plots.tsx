@@ -4,6 +4,7 @@ import type { JSX } from "preact";
 import { useMemo } from "preact/hooks";
 import type { DraftData } from "../../api/types.ts";
 import { figure } from "../../format.ts";
+import { t, tx } from "../../i18n/text.ts";
 import { CurvePlot, type Curve } from "../../plot/curve-plot.tsx";
 import { LARGEST_SENSITIVITY, NyquistPlot } from "../../plot/nyquist-plot.tsx";
 import type { Drawn } from "./use-drafts.ts";
@@ -28,14 +29,14 @@ export function DraftPlots({ drafts }: { drafts: NamedDraft[] }): JSX.Element {
   const found = useMemo(() => drafts.flatMap(({ name, role, drawn }) => (drawn.found ? [{ name, role, data: drawn.found }] : [])), [...key, ...Array<null>(4 - key.length).fill(null), drafts.map(({ name }) => name).join()]);
   const loops = useMemo(() => found.flatMap(loopsOf), [found]);
   const sensitivities = useMemo(() => found.flatMap(sensitivitiesOf), [found]);
-  if (!found.length) return <p class="quiet">Reading the model …</p>;
+  if (!found.length) return <p class="quiet">{t("Reading the model …")}</p>;
   const worst = found.map(({ data }) => data.margins.sensitivity_peak ?? 0);
-  const margins = found.map(({ name, data }) => `${name}: gain margin ${figure(data.margins.gain_margin_db, "dB")}, phase margin ${figure(data.margins.phase_margin_deg, "degrees")}`).join("; ");
+  const margins = found.map(({ name, data }) => t("{name}: gain margin {gain}, phase margin {phase}", { name, gain: figure(data.margins.gain_margin_db, "dB"), phase: figure(data.margins.phase_margin_deg, "°") })).join("; ");
   return (
     <div class="plots">
-      <NyquistPlot loops={loops} label={`Nyquist curve of the open loop. ${margins}`} />
+      <NyquistPlot loops={loops} label={t("Nyquist curve of the open loop. {margins}", { margins })} />
       <CurvePlot
-        title="Sensitivity |S|" label={`Sensitivity over frequency: at most ${worst.map((one) => figure(one)).join(", ")}`} curves={sensitivities}
+        title={t("Sensitivity |S|")} label={t("Sensitivity over frequency: at most {values}", { values: worst.map((one) => figure(one)).join(", ") })} curves={sensitivities}
         x={{ unit: "Hz", log: true }} y={{ unit: "", low: 0, high: Math.min(HIGHEST_SHOWN, Math.max(1.2 * LARGEST_SENSITIVITY, 1.05 * Math.max(...worst))) }} band={BAND_HZ} limits={[LARGEST_SENSITIVITY]}
       />
       {[0, 1].map((at) => <StepPlot key={at} found={found} at={at} />)}
@@ -43,7 +44,7 @@ export function DraftPlots({ drafts }: { drafts: NamedDraft[] }): JSX.Element {
   );
 }
 
-const WITHOUT = { name: "PI alone", role: "reference" };
+const WITHOUT = { name: t("PI alone"), role: "reference" };
 
 // The loop without a stabilisation is the same of all that have its pole: it is drawn once.
 function loopsOf({ name, role, data }: Found, at: number) {
@@ -60,10 +61,10 @@ function StepPlot({ found, at }: { found: Found[]; at: number }): JSX.Element | 
   const curves = useMemo(() => curvesOf(found, at), [found, at]);
   const steps = found.flatMap(({ data }) => data.steps[at] ?? []), speed = steps[0]?.speed_km_h;
   if (speed === undefined) return null;
-  const peaks = steps.map((one) => figure(one.peak_shaft_torque_nm)).join(", "), asked = found[0]?.data.step_nm;
+  const peaks = steps.map((one) => figure(one.peak_shaft_torque_nm)).join(", "), asked = found[0]?.data.step_nm ?? 0;
   return (
     <CurvePlot
-      title={<>{"T"}<sub>s</sub>{` after a step at ${speed} km/h`}</>} label={`Shaft torque at ${speed} km/h after a step of ${asked} N m: peak ${peaks} N m`} says={`peak ${peaks} N m`}
+      title={<>{tx("T<sub>s</sub> after a step at {speed} km/h", { sub: (text) => <sub>{text}</sub>, speed })}</>} label={t("Shaft torque at {speed} km/h after a step of {asked} N m: peak {peaks} N m", { speed, asked, peaks })} says={t("peak {peaks} N m", { peaks })}
       curves={curves} x={{ unit: "s" }} y={{ unit: "N m" }}
     />
   );
@@ -72,6 +73,6 @@ function StepPlot({ found, at }: { found: Found[]; at: number }): JSX.Element | 
 function curvesOf(found: Found[], at: number): Curve[] {
   const first = found[0]?.data;
   if (!first) return [];
-  const asked: Curve = { name: "asked for", role: "reference", looks: "dashes", x: first.time_s, y: first.time_s.map((time) => (time < 0 ? 0 : first.step_nm)) };
+  const asked: Curve = { name: t("requested torque"), role: "reference", looks: "dashes", x: first.time_s, y: first.time_s.map((time) => (time < 0 ? 0 : first.step_nm)) };
   return [asked, ...found.flatMap(({ name, role, data }) => { const step = data.steps[at]; return step ? [{ name, role, x: data.time_s, y: step.shaft_torque_nm }] : []; })];
 }

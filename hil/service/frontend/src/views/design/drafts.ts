@@ -1,5 +1,7 @@
 // Drafts of controllers as they stand in the address of the design studio, and as the service is asked about them.
 
+import { t } from "../../i18n/text.ts";
+
 export type Kind = "phase" | "gain";
 
 export const FIELDS = ["lead_deg", "lead_hz", "notch_hz", "notch_width", "notch_depth", "pole_rad_s"] as const;
@@ -66,4 +68,4 @@ export function bodyOf(model: string, { kind, texts }: Draft): Record<string, st
   return body;
 }
 
-export const nameOf = (at: number, { kind }: Draft): string => `${"ABCD"[at] ?? ""} ${kind === "phase" ? "lead" : "notch"}`;
+export const nameOf = (at: number, { kind }: Draft): string => (kind === "phase" ? t("{letter} lead", { letter: "ABCD"[at] ?? "" }) : t("{letter} notch", { letter: "ABCD"[at] ?? "" }));

@@ -8,6 +8,8 @@ import { to } from "../../addresses.ts";
 import { attempt } from "../../data.ts";
 import { download } from "../../download.ts";
 import { figure, percent } from "../../format.ts";
+import { English } from "../../i18n/english.tsx";
+import { t, tx } from "../../i18n/text.ts";
 import { NameField } from "../../ui/name-field.tsx";
 
 export function SaveController({ body, onSaved }: { body: object | null; onSaved: (name: string) => void }): JSX.Element {
@@ -35,14 +37,14 @@ export function SaveController({ body, onSaved }: { body: object | null; onSaved
     <>
       <form class="row" onSubmit={(event) => { event.preventDefault(); void work(true); }}>
         <NameField value={name} onChange={setName} />
-        <button type="submit" class="main" disabled={!body || busy}>Save the controller</button>
-        <button type="button" disabled={!body || busy} onClick={() => void work(false)}>Download controller.toml</button>
+        <button type="submit" class="main" disabled={!body || busy}>{t("Save the controller")}</button>
+        <button type="button" disabled={!body || busy} onClick={() => void work(false)}>{t("Download controller.toml")}</button>
       </form>
       <div aria-live="polite">
-        {busy ? <p class="quiet">Designing: every plant that the uncertainty allows …</p> : null}
-        {saved ? <p class="good">{"Saved as "}<a href={to.controller(saved)}>{saved}</a>{"; plans can load it."}</p> : null}
-        {found ? <p class="quiet">{`The worst of ${found.source} has |S| ${figure(found.worst_sensitivity_peak)}; ${percent(found.stable_share)} are stable.`}</p> : null}
-        {found?.warnings.map((text) => <p class="bad" key={text}>{text}</p>)}
+        {busy ? <p class="quiet">{t("Designing: every plant that the uncertainty allows …")}</p> : null}
+        {saved ? <p class="good">{tx("Saved as {link}; plans can load it.", { link: <a href={to.controller(saved)}>{saved}</a> })}</p> : null}
+        {found ? <p class="quiet">{tx("The worst of {plants} has |S| {peak}; {share} are stable.", { plants: <English>{found.source}</English>, peak: figure(found.worst_sensitivity_peak), share: percent(found.stable_share) })}</p> : null}
+        {found?.warnings.map((text) => <p class="bad" key={text}><English>{text}</English></p>)}
       </div>
     </>
   );

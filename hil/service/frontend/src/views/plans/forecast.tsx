@@ -5,6 +5,8 @@ import { useEffect, useState } from "preact/hooks";
 import { post, Refused } from "../../api/client.ts";
 import type { Forecast } from "../../api/types.ts";
 import { figure, percent } from "../../format.ts";
+import { English } from "../../i18n/english.tsx";
+import { t } from "../../i18n/text.ts";
 import { Scroll } from "../../ui/parts.tsx";
 import { Criteria } from "../criteria.tsx";
 
@@ -34,7 +36,7 @@ export function useForecast(wanted: Wanted | null, form?: { current: HTMLFormEle
     let current = true;
     const predict = async () => {
       try {
-        if (form && !form.current?.checkValidity()) throw new Error("A variable is beyond its bounds.");
+        if (form && !form.current?.checkValidity()) throw new Error(t("A variable is beyond its bounds."));
         const forecast = await post<Forecast>("/forecasts", wanted);
         if (current) setFound({ forecast, error: "", may: forecast.fits });
       } catch (error) {
@@ -51,19 +53,19 @@ export function useForecast(wanted: Wanted | null, form?: { current: HTMLFormEle
 
 // With criteria it says what each is predicted to be, else how many fail.
 export function ForecastShown({ of: { forecast, error }, criteria = false }: { of: Foreseen; criteria?: boolean }): JSX.Element {
-  if (error) return <p class="bad">{error}</p>;
-  if (!forecast) return <p class="quiet">Predicting duration and peaks …</p>;
+  if (error) return <p class="bad"><English>{error}</English></p>;
+  if (!forecast) return <p class="quiet">{t("Predicting duration and peaks …")}</p>;
   const failing = forecast.criteria.filter((one) => one.verdict === "fail").length;
   const loads = Object.entries(forecast.bus_loads ?? {});
   return (
     <>
-      <p class={forecast.fits ? "" : "bad"}>{`About ${Math.round(forecast.duration_s)} s of bench time. ${forecast.fits ? "Fits the bench." : "It exceeds the limits of the bench and cannot be queued."}`}</p>
-      {loads.length ? <p class={loads.some(([, load]) => load > 1) ? "bad" : ""}>{`Load of the buses: ${loads.map(([bus, load]) => `${bus} at most ${percent(load)}`).join(", ")}.`}</p> : null}
-      {failing ? <p class="bad">{`${failing} of ${forecast.criteria.length} criteria are predicted to fail.`}</p> : null}
+      <p class={forecast.fits ? "" : "bad"}>{t("About {seconds} s of bench time.", { seconds: Math.round(forecast.duration_s) })} {forecast.fits ? t("Fits the bench.") : t("It exceeds the limits of the bench and cannot be queued.")}</p>
+      {loads.length ? <p class={loads.some(([, load]) => load > 1) ? "bad" : ""}>{t("Largest loads of the buses: {loads}.", { loads: loads.map(([bus, load]) => `${bus} ${percent(load)}`).join(", ") })}</p> : null}
+      {failing ? <p class="bad">{t("Criteria predicted to fail: {failing} of {all}.", { failing, all: forecast.criteria.length })}</p> : null}
       {criteria && forecast.criteria.length ? <Criteria of={forecast.criteria} /> : null}
-      <Scroll label="Predicted peaks">
+      <Scroll label={t("Predicted peaks")}>
         <table>
-          <thead><tr><th scope="col">predicted</th><th scope="col" class="number">peak</th><th scope="col" class="number">limit</th><th scope="col" class="number">used</th></tr></thead>
+          <thead><tr><th scope="col">{t("predicted")}</th><th scope="col" class="number">{t("peak")}</th><th scope="col" class="number">{t("limit")}</th><th scope="col" class="number">{t("used")}</th></tr></thead>
           <tbody>
             {Object.entries(forecast.predicted).map(([name, { value, limit }]) => (
               <tr key={name}><th scope="row">{name}</th><td class={value > limit ? "number bad" : "number"}>{figure(value)}</td><td class="number">{figure(limit)}</td><td class="number">{percent(value / limit)}</td></tr>

@@ -6,6 +6,7 @@ import { post } from "../../api/client.ts";
 import type { Bench, Plan, Run } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
+import { t } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { ForecastShown, useForecast } from "./forecast.tsx";
 
@@ -37,14 +38,14 @@ export function StartPlan({ bench, plan, from }: { bench?: string; plan?: string
   return (
     <form ref={form} class="start" onSubmit={(event) => void start(event)}>
       {plan ? null : (
-        <label class="field">Plan
+        <label class="field">{t("Plan")}
           <select value={found?.name ?? ""} onChange={(event) => { setPlan(event.currentTarget.value); setTexts({}); }}>
             {plans.map((one) => <option key={one.name} value={one.name}>{one.title || one.name}</option>)}
           </select>
         </label>
       )}
       {bench ? null : (
-        <label class="field">Bench
+        <label class="field">{t("Bench")}
           <select value={where} onChange={(event) => setBench(event.currentTarget.value)}>
             {benches.map((one) => <option key={one.name} value={one.name}>{one.name}</option>)}
           </select>
@@ -52,13 +53,13 @@ export function StartPlan({ bench, plan, from }: { bench?: string; plan?: string
       )}
       {plan || !found ? null : <p class="quiet"><a href={to.plan(found.name)}>{found.name}</a>{found.description ? `: ${found.description}` : ""}</p>}
       {Object.entries(found?.variables ?? {}).map(([name, variable]) => (
-        <label class="field" key={`${found?.name} ${name}`}>{`${variable.description || name}${variable.unit ? ` in ${variable.unit}` : ""}`}
+        <label class="field" key={`${found?.name} ${name}`}>{variable.unit ? t("{name} in {unit}", { name: variable.description || name, unit: variable.unit }) : variable.description || name}
           <input type="number" step="any" required name={name} value={texts[name] ?? String(variable.default)} min={variable.lower ?? undefined} max={variable.upper ?? undefined}
             onInput={(event) => setTexts({ ...texts, [name]: event.currentTarget.value })} />
         </label>
       ))}
       <div class="forecast" aria-live="polite"><ForecastShown of={forecast} /></div>
-      <button type="submit" class="main" disabled={!forecast.may}>Queue the run</button>
+      <button type="submit" class="main" disabled={!forecast.may}>{t("Queue the run")}</button>
     </form>
   );
 }

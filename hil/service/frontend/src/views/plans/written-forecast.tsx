@@ -5,6 +5,7 @@ import { useState } from "preact/hooks";
 import type { Bench, Plan } from "../../api/types.ts";
 import { useData } from "../../data.ts";
 import { ForecastShown, useForecast } from "./forecast.tsx";
+import { t } from "../../i18n/text.ts";
 
 export function WrittenForecast({ plan, text }: { plan: Plan | null; text: string }): JSX.Element {
   const benches = (useData<Bench[]>("/benches").data ?? []).map((one) => one.name), [chosen, setBench] = useState("");
@@ -13,8 +14,8 @@ export function WrittenForecast({ plan, text }: { plan: Plan | null; text: strin
   const forecast = useForecast(plan && bench ? { plan: plan.name, bench, values, text } : null);
   return (
     <>
-      <label class="field">Bench<select value={bench} onChange={(event) => setBench(event.currentTarget.value)}>{benches.map((one) => <option key={one}>{one}</option>)}</select></label>
-      <div class="forecast" aria-live="polite">{plan ? <ForecastShown of={forecast} criteria /> : <p class="quiet">It is predicted when no mistake is left.</p>}</div>
+      <label class="field">{t("Bench")}<select value={bench} onChange={(event) => setBench(event.currentTarget.value)}>{benches.map((one) => <option key={one}>{one}</option>)}</select></label>
+      <div class="forecast" aria-live="polite">{plan ? <ForecastShown of={forecast} criteria /> : <p class="quiet">{t("It is predicted when no mistake is left.")}</p>}</div>
     </>
   );
 }

@@ -6,6 +6,7 @@ import { ask, post } from "../../api/client.ts";
 import type { Note, RunChoices, RunNotes } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
+import { t } from "../../i18n/text.ts";
 import { useMay, useMe } from "../../session.ts";
 import { Moment, Section } from "../../ui/parts.tsx";
 
@@ -18,11 +19,11 @@ export function Notes({ run }: { run: number }): JSX.Element {
   const change = (work: () => Promise<unknown>) => attempt(work).then(found.again);
   if (!may("operator") && !tags.length && !notes.length) return <></>;
   return (
-    <Section title="Tags and notes" label="notes">
+    <Section title={t("Tags and notes")} label="notes">
       <div class="row level small">
         {tags.map((tag) => (
           <span class="chip tag" key={tag}><a href={`${to.list("runs")}?tag=${encodeURIComponent(tag)}`}>{tag}</a>
-            {may("operator") ? <button type="button" class="plain" aria-label={`Take the tag ${tag} off`} onClick={() => void change(() => ask("DELETE", `${path}/tags/${encodeURIComponent(tag)}`))}>×</button> : null}
+            {may("operator") ? <button type="button" class="plain" aria-label={t("Take the tag {tag} off", { tag })} onClick={() => void change(() => ask("DELETE", `${path}/tags/${encodeURIComponent(tag)}`))}>×</button> : null}
           </span>
         ))}
         {may("operator") ? <AddTag onAdd={(tag) => change(() => ask("PUT", `${path}/tags/${encodeURIComponent(tag)}`))} /> : null}
@@ -41,9 +42,9 @@ function AddTag({ onAdd }: { onAdd: (tag: string) => Promise<unknown> }): JSX.El
   };
   return (
     <form class="row level" onSubmit={add}>
-      <label>{"Tag "}<input list="known-tags" required pattern={TAG} title="letters, digits, _ . : and -" maxLength={40} size={14} autocomplete="off" value={tag} onInput={(event) => setTag(event.currentTarget.value)} /></label>
+      <label>{t("Tag")}{" "}<input list="known-tags" required pattern={TAG} title={t("letters, digits, _ . : and -")} maxLength={40} size={14} autocomplete="off" value={tag} onInput={(event) => setTag(event.currentTarget.value)} /></label>
       <datalist id="known-tags">{(choices.data?.tags ?? []).map((one) => <option key={one} value={one} />)}</datalist>
-      <button type="submit">Add</button>
+      <button type="submit">{t("Add")}</button>
     </form>
   );
 }
@@ -51,9 +52,9 @@ function AddTag({ onAdd }: { onAdd: (tag: string) => Promise<unknown> }): JSX.El
 function NoteShown({ note, onRemove }: { note: Note; onRemove: () => void }): JSX.Element {
   const may = useMay(), me = useMe();
   return (
-    <article class="note" aria-label={`Note of ${note.who}`}>
+    <article class="note" aria-label={t("Note of {who}", { who: note.who })}>
       <p class="quiet">{note.who}, <Moment at={note.at} />
-        {may("engineer") || (may("operator") && note.who === me.name) ? <button type="button" class="plain" onClick={() => { if (confirm("Remove this note?")) onRemove(); }}>Remove</button> : null}
+        {may("engineer") || (may("operator") && note.who === me.name) ? <button type="button" class="plain" onClick={() => { if (confirm(t("Remove this note?"))) onRemove(); }}>{t("Remove")}</button> : null}
       </p>
       <p class="written">{note.text}</p>
     </article>
@@ -68,8 +69,8 @@ function AddNote({ onAdd }: { onAdd: (text: string) => Promise<unknown> }): JSX.
   };
   return (
     <form onSubmit={add}>
-      <label class="field">Note<textarea class="prose" rows={2} maxLength={4000} value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
-      <button type="submit" disabled={!text.trim()}>Add the note</button>
+      <label class="field">{t("Note")}<textarea class="prose" rows={2} maxLength={4000} value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
+      <button type="submit" disabled={!text.trim()}>{t("Add the note")}</button>
     </form>
   );
 }

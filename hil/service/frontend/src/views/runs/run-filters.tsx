@@ -4,10 +4,11 @@ import type { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import type { RunChoices } from "../../api/types.ts";
 import { useData } from "../../data.ts";
-import { inWords } from "../../ui/parts.tsx";
+import { t } from "../../i18n/text.ts";
+import { kindInWords } from "../../ui/kinds.ts";
 import { FILTERS, type Filter, type RunsQuery } from "./runs-query.ts";
 
-const NAMES: Record<Filter, string> = { plan: "Plan", bench: "Bench", dut: "Device", verdict: "Verdict", requested_by: "Asked for by", state: "State", tag: "Tag" };
+const NAMES: Record<Filter, string> = { plan: t("Plan"), bench: t("Bench"), dut: t("Device"), verdict: t("Verdict"), requested_by: t("Asked for by"), state: t("State"), tag: t("Tag") };
 const VERDICTS = ["pass", "fail", "error", "done"];
 const STATES = ["waiting_approval", "queued", "running", "ended", "interrupted", "cancelled"];
 const WAIT_MS = 300;
@@ -20,17 +21,17 @@ export function RunFilters({ query, onChange }: { query: RunsQuery; onChange: (q
   const filtered = FILTERS.some((name) => query.filters[name]) || query.text || query.since || query.until || query.criterion;
   const clear = () => onChange({ ...query, filters: Object.fromEntries(FILTERS.map((name) => [name, ""])) as Record<Filter, string>, text: "", since: "", until: "", criterion: "", above: "", below: "" });
   return (
-    <form class="filters small" role="search" aria-label="Runs" onSubmit={(event) => event.preventDefault()}>
-      <Typed label="Words" type="search" value={query.text} onChange={(text) => onChange({ ...query, text })} />
+    <form class="filters small" role="search" aria-label={t("Runs")} onSubmit={(event) => event.preventDefault()}>
+      <Typed label={t("Words")} type="search" value={query.text} onChange={(text) => onChange({ ...query, text })} />
       {FILTERS.map((name) => (
         <Choice key={name} label={NAMES[name]} value={query.filters[name]} all={offered[name]} onChange={(value) => onChange({ ...query, filters: { ...query.filters, [name]: value } })} />
       ))}
-      <Typed label="From" type="date" value={query.since} onChange={(since) => onChange({ ...query, since })} />
-      <Typed label="To" type="date" value={query.until} onChange={(until) => onChange({ ...query, until })} />
-      <Choice label="Criterion" value={query.criterion} all={choices?.criteria ?? []} onChange={(criterion) => onChange({ ...query, criterion, sort: criterion ? query.sort : query.sort === "value" ? "run" : query.sort })} />
-      {query.criterion ? <Typed label="at least" type="number" value={query.above} onChange={(above) => onChange({ ...query, above })} /> : null}
-      {query.criterion ? <Typed label="at most" type="number" value={query.below} onChange={(below) => onChange({ ...query, below })} /> : null}
-      {filtered ? <button type="button" class="plain" onClick={clear}>Clear all</button> : null}
+      <Typed label={t("From")} type="date" value={query.since} onChange={(since) => onChange({ ...query, since })} />
+      <Typed label={t("To")} type="date" value={query.until} onChange={(until) => onChange({ ...query, until })} />
+      <Choice label={t("Criterion")} value={query.criterion} all={choices?.criteria ?? []} onChange={(criterion) => onChange({ ...query, criterion, sort: criterion ? query.sort : query.sort === "value" ? "run" : query.sort })} />
+      {query.criterion ? <Typed label={t("at least")} type="number" value={query.above} onChange={(above) => onChange({ ...query, above })} /> : null}
+      {query.criterion ? <Typed label={t("at most")} type="number" value={query.below} onChange={(below) => onChange({ ...query, below })} /> : null}
+      {filtered ? <button type="button" class="plain" onClick={clear}>{t("Clear all")}</button> : null}
     </form>
   );
 }
@@ -39,9 +40,9 @@ function Choice({ label, value, all, onChange }: { label: string; value: string;
   return (
     <label class="field">{label}
       <select value={value} onChange={(event) => onChange(event.currentTarget.value)}>
-        <option value="">all</option>
+        <option value="">{t("all")}</option>
         {value && !all.includes(value) ? <option value={value}>{value}</option> : null}
-        {all.map((one) => <option key={one} value={one}>{label === "Verdict" || label === "State" ? inWords(one) : one}</option>)}
+        {all.map((one) => <option key={one} value={one}>{label === NAMES.verdict || label === NAMES.state ? kindInWords(one) : one}</option>)}
       </select>
     </label>
   );

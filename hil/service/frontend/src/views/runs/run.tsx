@@ -7,6 +7,8 @@ import type { Run, RunView as View } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
 import { figure } from "../../format.ts";
+import { English } from "../../i18n/english.tsx";
+import { t, tx } from "../../i18n/text.ts";
 import { useLive } from "../../live.ts";
 import { Board } from "../../plot/board.tsx";
 import { rangeText } from "../../plot/range.ts";
@@ -26,7 +28,7 @@ const WAITING_MS = 2000;
 
 export function RunView({ run: id }: { run: number }): JSX.Element {
   const run = useData<Run>(`/runs/${id}`, WAITING_MS);
-  return <Loaded of={run} what={`run ${id}`}>{(found) => <Found key={found.state} run={found} />}</Loaded>;
+  return <Loaded of={run} what={t("run {run}", { run: id })}>{(found) => <Found key={found.state} run={found} />}</Loaded>;
 }
 
 function Found({ run }: { run: Run }): JSX.Element {
@@ -40,14 +42,14 @@ function Found({ run }: { run: Run }): JSX.Element {
   return (
     <>
       <LostNotice />
-      <Heading kind={<>{`Run ${run.id} on `}<a href={to.bench(run.bench)}>{run.bench}</a></>}>{run.title || run.plan} <Badge kind={verdictOf(run)} /></Heading>
+      <Heading kind={tx("Run {run} on {bench}", { run: run.id, bench: <a href={to.bench(run.bench)}>{run.bench}</a> })}>{run.title || run.plan} <Badge kind={verdictOf(run)} /></Heading>
       {isLive && state?.running?.id === run.id ? <Banner state={state} /> : null}
       <RunFacts run={run} />
       <RunActions run={run} />
       {view.data ? (
-        <Section title="Plots" label="plots"><Board view={view.data} plan={run.plan} bench={isLive ? run.bench : null} /></Section>
-      ) : isLive ? <p class="quiet">Nothing has been measured yet.</p> : recorded ? <Loaded of={view} what="the recording">{() => null}</Loaded> : null}
-      {isLive || criteria.length ? <Section title="Criteria" label="criteria"><Criteria of={criteria} onSegment={(segment) => view.data && showSegment(view.data, segment)} /></Section> : null}
+        <Section title={t("Plots")} label="plots"><Board view={view.data} plan={run.plan} bench={isLive ? run.bench : null} /></Section>
+      ) : isLive ? <p class="quiet">{t("Nothing has been measured yet.")}</p> : recorded ? <Loaded of={view} what={t("the recording")}>{() => null}</Loaded> : null}
+      {isLive || criteria.length ? <Section title={t("Criteria")} label="criteria"><Criteria of={criteria} onSegment={(segment) => view.data && showSegment(view.data, segment)} /></Section> : null}
       {view.data ? <Happenings view={view.data} /> : null}
       <Notes run={run.id} />
       {isOver ? <Downloads run={run} /> : null}
@@ -58,21 +60,21 @@ function Found({ run }: { run: Run }): JSX.Element {
 
 function RunFacts({ run }: { run: Run }): JSX.Element {
   const values = Object.entries(run.values).map(([name, value]) => `${name} = ${figure(value)}`).join(", ");
-  const safe = { confirmed: "confirmed", not_confirmed: "NOT CONFIRMED", not_needed: "not needed" };
+  const safe = { confirmed: t("confirmed"), not_confirmed: t("NOT CONFIRMED"), not_needed: t("not needed") };
   return (
     <Facts>
       {([
-        ["plan", <a href={to.plan(run.plan)}>{run.plan}</a>],
-        values ? ["variables", values] : null,
-        run.dut ? ["device under test", run.dut] : null,
-        ["asked for by", run.requested_by],
-        run.approved_by ? ["approved by", run.approved_by] : null,
-        ["queued", <Moment at={run.queued_at} />],
-        run.started_at ? ["began", <Moment at={run.started_at} />] : null,
-        run.ended_at ? ["ended", <Moment at={run.ended_at} />] : null,
-        run.safe_state ? ["safe state", <span class={run.safe_state === "not_confirmed" ? "bad" : ""}>{safe[run.safe_state]}</span>] : null,
-        run.reason ? ["reason", run.reason] : null,
-        run.hazard ? ["hazard", run.hazard] : null,
+        [t("plan"), <a href={to.plan(run.plan)}>{run.plan}</a>],
+        values ? [t("variables"), values] : null,
+        run.dut ? [t("device under test"), run.dut] : null,
+        [t("asked for by"), run.requested_by],
+        run.approved_by ? [t("approved by"), run.approved_by] : null,
+        [t("queued at"), <Moment at={run.queued_at} />],
+        run.started_at ? [t("began"), <Moment at={run.started_at} />] : null,
+        run.ended_at ? [t("ended"), <Moment at={run.ended_at} />] : null,
+        run.safe_state ? [t("safe state"), <span class={run.safe_state === "not_confirmed" ? "bad" : ""}>{safe[run.safe_state]}</span>] : null,
+        run.reason ? [t("reason"), <English>{run.reason}</English>] : null,
+        run.hazard ? [t("hazard"), run.hazard] : null,
       ] as ([string, JSX.Element | string] | null)[]).filter((one) => one !== null)}
     </Facts>
   );
@@ -88,14 +90,14 @@ function RunActions({ run }: { run: Run }): JSX.Element | null {
   const waits = run.state === "queued" || run.state === "waiting_approval";
   return (
     <div class="row level">
-      {may("operator") && OVER.includes(run.state) ? <button type="button" onClick={() => void again()}>Again</button> : null}
-      {may("operator") && OVER.includes(run.state) ? <a href={againWith(run)}>Again with other values</a> : null}
-      {may("operator") && waits ? <button type="button" onClick={() => void attempt(() => post(`/runs/${run.id}/abort`))}>Cancel</button> : null}
-      {run.state === "waiting_approval" && may("engineer") ? <button type="button" class="main" onClick={() => void attempt(() => post(`/runs/${run.id}/approve`))}>Approve</button> : null}
-      {recorded && may("engineer") ? <a href={`${to.list("diagnoses")}?runs=${run.id}`}>Diagnose</a> : null}
-      {recorded && may("engineer") ? <a href={`${to.list("identifications")}?runs=${run.id}`}>Identify a model</a> : null}
-      {run.state === "ended" ? <a href={`${to.list("compare")}?runs=${run.id}`}>Compare with another run</a> : null}
-      <a href={`${to.list("runs")}?plan=${encodeURIComponent(run.plan)}`}>All runs of this plan</a>
+      {may("operator") && OVER.includes(run.state) ? <button type="button" onClick={() => void again()}>{t("Again")}</button> : null}
+      {may("operator") && OVER.includes(run.state) ? <a href={againWith(run)}>{t("Again with other values, bench or controller")}</a> : null}
+      {may("operator") && waits ? <button type="button" onClick={() => void attempt(() => post(`/runs/${run.id}/abort`))}>{t("Cancel")}</button> : null}
+      {run.state === "waiting_approval" && may("engineer") ? <button type="button" class="main" onClick={() => void attempt(() => post(`/runs/${run.id}/approve`))}>{t("Approve")}</button> : null}
+      {recorded && may("engineer") ? <a href={`${to.list("diagnoses")}?runs=${run.id}`}>{t("Diagnose")}</a> : null}
+      {recorded && may("engineer") ? <a href={`${to.list("identifications")}?runs=${run.id}`}>{t("Identify a model")}</a> : null}
+      {run.state === "ended" ? <a href={`${to.list("compare")}?runs=${run.id}`}>{t("Compare with another run")}</a> : null}
+      <a href={`${to.list("runs")}?plan=${encodeURIComponent(run.plan)}`}>{t("All runs of this plan")}</a>
     </div>
   );
 }

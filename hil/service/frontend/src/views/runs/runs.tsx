@@ -6,6 +6,8 @@ import type { FoundRun, FoundRuns } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { useData } from "../../data.ts";
 import { figure, limitText, whole } from "../../format.ts";
+import { English } from "../../i18n/english.tsx";
+import { t, tn } from "../../i18n/text.ts";
 import { go, useQuery } from "../../router.ts";
 import { Badge, Heading, Moment, Scroll, verdictOf } from "../../ui/parts.tsx";
 import { RunFilters } from "./run-filters.tsx";
@@ -26,30 +28,30 @@ export function Runs(): JSX.Element {
   const total = shown?.total ?? 0, pages = Math.max(1, Math.ceil(total / PAGE));
   return (
     <>
-      <Heading>Runs</Heading>
+      <Heading>{t("Runs")}</Heading>
       <RunFilters query={query} onChange={(changed) => set({ ...changed, page: 1 })} />
       <div class="part-head">
-        <p aria-live="polite">{shown ? `${whole(total)} ${total === 1 ? "run" : "runs"}` : "…"}{found.error ? <span class="bad"> {found.error.message}</span> : null}</p>
+        <p aria-live="polite">{shown ? tn("{count} run", "{count} runs", total) : "…"}{found.error ? <span class="bad"> <English>{found.error.message}</English></span> : null}</p>
         <span class="buttons small">
-          {chosen.length ? <span class="quiet">{`${chosen.length} chosen`}</span> : null}
-          <button type="button" disabled={chosen.length < 2} onClick={() => go(`${to.list("compare")}?runs=${chosen.join(",")}`)}>Compare</button>
-          {chosen.length ? <button type="button" class="plain" onClick={() => setChosen([])}>Choose none</button> : null}
+          {chosen.length ? <span class="quiet">{t("{count} chosen", { count: chosen.length })}</span> : null}
+          <button type="button" disabled={chosen.length < 2} onClick={() => go(`${to.list("compare")}?runs=${chosen.join(",")}`)}>{t("Compare")}</button>
+          {chosen.length ? <button type="button" class="plain" onClick={() => setChosen([])}>{t("Choose none")}</button> : null}
         </span>
       </div>
-      {shown && total === 0 ? <p class="quiet">No run passes these filters.</p> : null}
+      {shown && total === 0 ? <p class="quiet">{t("No run passes these filters.")}</p> : null}
       {shown && total > 0 ? <Table runs={shown.runs} query={query} chosen={chosen} busy={found.loading} onChoose={choose} onSort={(by) => set(sorted(query, by))} /> : null}
       {pages > 1 ? (
-        <nav class="row pages" aria-label="Pages of runs">
-          <button type="button" disabled={query.page <= 1} onClick={() => set({ ...query, page: query.page - 1 })}>Previous</button>
-          <span>{`Page ${query.page} of ${whole(pages)}`}</span>
-          <button type="button" disabled={query.page >= pages} onClick={() => set({ ...query, page: query.page + 1 })}>Next</button>
+        <nav class="row pages" aria-label={t("Pages of runs")}>
+          <button type="button" disabled={query.page <= 1} onClick={() => set({ ...query, page: query.page - 1 })}>{t("Previous")}</button>
+          <span>{t("Page {page} of {pages}", { page: query.page, pages: whole(pages) })}</span>
+          <button type="button" disabled={query.page >= pages} onClick={() => set({ ...query, page: query.page + 1 })}>{t("Next")}</button>
         </nav>
       ) : null}
     </>
   );
 }
 
-const COLUMNS: [Order | "", string, string][] = [["run", "run", "number"], ["plan", "plan", ""], ["verdict", "verdict", ""], ["bench", "bench", ""], ["dut", "device", ""], ["ended", "ended", ""], ["", "by", ""]];
+const COLUMNS: [Order | "", string, string][] = [["run", t("run"), "number"], ["plan", t("plan"), ""], ["verdict", t("verdict"), ""], ["bench", t("bench"), ""], ["dut", t("device"), ""], ["ended", t("ended"), ""], ["", t("by"), ""]];
 
 interface TableOptions {
   runs: FoundRun[];
@@ -63,10 +65,10 @@ interface TableOptions {
 function Table({ runs, query, chosen, busy, onChoose, onSort }: TableOptions): JSX.Element {
   const columns = query.criterion ? [...COLUMNS.slice(0, 3), ["value", query.criterion, "number"] as [Order, string, string], ...COLUMNS.slice(3)] : COLUMNS;
   return (
-    <Scroll label="Runs">
+    <Scroll label={t("Runs")}>
       <table aria-busy={busy}>
         <thead>
-          <tr><th scope="col"><span class="hidden">compare</span></th>
+          <tr><th scope="col"><span class="hidden">{t("compare")}</span></th>
             {columns.map(([by, name, kind]) => (
               <th key={name} scope="col" class={kind} aria-sort={by === query.sort ? (query.rising ? "ascending" : "descending") : undefined}>
                 {by ? <button type="button" class="plain sort" onClick={() => onSort(by)}>{name}<span aria-hidden="true">{by === query.sort ? (query.rising ? " ▲" : " ▼") : ""}</span></button> : name}
@@ -86,10 +88,10 @@ function Row({ found, withValue, chosen, onChoose }: { found: FoundRun; withValu
   const about = [values, run.reason?.split("\n")[0] ?? ""].filter(Boolean).join("; ");
   return (
     <tr>
-      <td><input type="checkbox" aria-label={`Compare run ${run.id}`} checked={chosen} onChange={() => onChoose(run.id)} /></td>
+      <td><input type="checkbox" aria-label={t("Compare run {run}", { run: run.id })} checked={chosen} onChange={() => onChoose(run.id)} /></td>
       <td class="number"><a href={to.run(run.id)}>{run.id}</a></td>
-      <th scope="row"><a href={to.run(run.id)} class="quietly">{run.title || run.plan}</a>{found.tags?.map((tag) => <span class="tag" key={tag}>{tag}</span>)}{about ? <span class="reason">{about}</span> : null}</th>
-      <td><Badge kind={verdictOf(run)} />{run.safe_state === "not_confirmed" ? <span class="bad"> NOT CONFIRMED SAFE</span> : null}</td>
+      <th scope="row"><a href={to.run(run.id)} class="quietly">{run.title || run.plan}</a>{found.tags?.map((tag) => <span class="tag" key={tag}>{tag}</span>)}{about ? <span class="reason"><English>{about}</English></span> : null}</th>
+      <td><Badge kind={verdictOf(run)} />{run.safe_state === "not_confirmed" ? <span class="bad"> {t("NOT CONFIRMED SAFE")}</span> : null}</td>
       {withValue ? <td class={`number ${found.criterion_verdict === "fail" ? "bad" : ""}`}>{figure(found.value, found.unit)}<span class="reason">{limitText(found.upper, found.lower)}</span></td> : null}
       <td><a href={to.bench(run.bench)}>{run.bench}</a></td>
       <td>{run.dut || "–"}</td>

@@ -6,6 +6,7 @@ import { post } from "../../api/client.ts";
 import type { Diagnosis, Model, Study } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
+import { t } from "../../i18n/text.ts";
 import { go, useQuery } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { Heading, Loaded, Section } from "../../ui/parts.tsx";
@@ -13,15 +14,15 @@ import { runsFrom } from "./chosen-runs.ts";
 import { Alternatives, Effects } from "./effects.tsx";
 import { ErrorMap, Gaps } from "./gaps.tsx";
 import { KeepModel } from "./keep-model.tsx";
-import { ChooseRuns, StudyList, StudyPage } from "./study-parts.tsx";
+import { ChooseRecordings, ChooseRuns, StudyList, StudyPage } from "./study-parts.tsx";
 
 export function Diagnoses(): JSX.Element {
   const may = useMay();
   return (
     <>
-      <Heading>Diagnoses</Heading>
+      <Heading>{t("Diagnoses")}</Heading>
       {may("engineer") ? <Begin /> : null}
-      <Section title="All diagnoses" label="all"><StudyList kind="diagnosis" /></Section>
+      <Section title={t("All diagnoses")} label="all"><StudyList kind="diagnosis" /></Section>
     </>
   );
 }
@@ -30,25 +31,28 @@ function Begin(): JSX.Element {
   const [query] = useQuery();
   const models = (useData<Model[]>("/models").data ?? []).filter((one) => one.kind !== "transfer_function");
   const [runs, setRuns] = useState(() => runsFrom(query.get("runs"))), [holdout, setHoldout] = useState<number[]>([]);
+  const [recordings, setRecordings] = useState(() => runsFrom(query.get("recordings"))), [heldRecordings, setHeldRecordings] = useState<number[]>([]);
   const [chosen, setModel] = useState(query.get("model") ?? ""), [minutes, setMinutes] = useState("10");
   const model = chosen || models[0]?.name || "";
   const begin = async (event: Event) => {
     event.preventDefault();
-    const study = await attempt(() => post<Study>("/diagnoses", { model, runs, holdout, at_most_min: Number(minutes) }));
+    const study = await attempt(() => post<Study>("/diagnoses", { model, runs, recordings, holdout, holdout_recordings: heldRecordings, at_most_min: Number(minutes) }));
     if (study) go(to.diagnosis(study.id));
   };
   return (
     <form class="card" onSubmit={(event) => void begin(event)}>
-      <h2>Find what a model lacks</h2>
+      <h2>{t("Find what a model lacks")}</h2>
       <div class="row">
-        <label class="field">Model<select value={model} onChange={(event) => setModel(event.currentTarget.value)}>{models.map((one) => <option key={one.name}>{one.name}</option>)}</select></label>
-        <label class="field">Time limit, minutes<input type="number" min="0.1" max="60" step="any" required value={minutes} onInput={(event) => setMinutes(event.currentTarget.value)} /></label>
+        <label class="field">{t("Model")}<select value={model} onChange={(event) => setModel(event.currentTarget.value)}>{models.map((one) => <option key={one.name}>{one.name}</option>)}</select></label>
+        <label class="field">{t("Time limit, minutes")}<input type="number" min="0.1" max="60" step="any" required value={minutes} onInput={(event) => setMinutes(event.currentTarget.value)} /></label>
       </div>
       <div class="halves">
-        <ChooseRuns legend="Runs to compare with the model" chosen={runs} onChange={setRuns} without={holdout} />
-        <ChooseRuns legend="Runs held out, for validation" chosen={holdout} onChange={setHoldout} without={runs} />
+        <ChooseRuns legend={t("Runs to compare with the model")} chosen={runs} onChange={setRuns} without={holdout} />
+        <ChooseRuns legend={t("Runs held out, for validation")} chosen={holdout} onChange={setHoldout} without={runs} />
+        <ChooseRecordings legend={t("Given recordings to compare with the model")} chosen={recordings} onChange={setRecordings} without={heldRecordings} />
+        <ChooseRecordings legend={t("Given recordings held out, for validation")} chosen={heldRecordings} onChange={setHeldRecordings} without={recordings} />
       </div>
-      <button type="submit" class="main" disabled={!runs.length || !model}>Diagnose</button>
+      <button type="submit" class="main" disabled={!(runs.length || recordings.length) || !model}>{t("Diagnose")}</button>
     </form>
   );
 }
@@ -61,7 +65,7 @@ function Result({ study }: { study: Study }): JSX.Element | null {
   const done = (study.files ?? []).includes("diagnosis.json");
   const found = useData<Diagnosis>(done ? `/diagnoses/${study.id}` : null);
   if (!done) return null;
-  return <Loaded of={found} what="the diagnosis">{(data) => <Found data={data} />}</Loaded>;
+  return <Loaded of={found} what={t("the diagnosis")}>{(data) => <Found data={data} />}</Loaded>;
 }
 
 function Found({ data }: { data: Diagnosis }): JSX.Element {
@@ -70,10 +74,10 @@ function Found({ data }: { data: Diagnosis }): JSX.Element {
     <>
       <Effects of={data} />
       {data.alternatives.length ? <Alternatives of={data} /> : null}
-      <Section title="Error over noise, before → after" label="map"><ErrorMap of={data.map} /></Section>
-      <Section title="Gap, % of the signal" label="gap"><Gaps of={data.gap} label="Gap" /></Section>
-      {hasHoldout ? <Section title="Gap on runs that were held out" label="holdout"><Gaps of={data.holdout_gap} label="Gap of held-out runs" /></Section> : null}
-      <KeepModel study={data.study} file="model.toml" what="improved model" />
+      <Section title={t("Error over noise, before → after")} label="map"><ErrorMap of={data.map} /></Section>
+      <Section title={t("Gap, % of the signal")} label="gap"><Gaps of={data.gap} label={t("Gap")} /></Section>
+      {hasHoldout ? <Section title={t("Gap on runs that were held out")} label="holdout"><Gaps of={data.holdout_gap} label={t("Gap of held-out runs")} /></Section> : null}
+      <KeepModel study={data.study} file="model.toml" what={t("improved model")} />
     </>
   );
 }

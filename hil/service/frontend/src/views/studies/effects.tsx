@@ -6,6 +6,8 @@ import { ask, post } from "../../api/client.ts";
 import type { Bench, Diagnosis, Run } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
+import { English } from "../../i18n/english.tsx";
+import { t, tx } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { Badge, inWords, Section } from "../../ui/parts.tsx";
@@ -18,18 +20,18 @@ type Alternative = Diagnosis["alternatives"][number];
 export function Effects({ of }: { of: Diagnosis }): JSX.Element {
   const updates = Object.entries(of.parameter_updates);
   return (
-    <Section title={<>Effects that the model lacks <Badge kind={of.verdict} /></>} label="effects">
-      {of.unfinished ? <p>{`Unfinished: ${of.unfinished}`}</p> : null}
-      {of.effects.length ? <ul>{of.effects.map((one) => <li key={one.id}><Named effect={one} /></li>)}</ul> : <p>None was named.</p>}
-      {updates.length ? <p>{`Parameters that change: ${updates.map(([name]) => inWords(name)).join(", ")}.`}</p> : null}
-      {[of.remaining_gap, ...of.notes].filter(Boolean).map((text) => <p key={text} class="quiet">{text}</p>)}
+    <Section title={<>{t("Effects that the model lacks")} <Badge kind={of.verdict} /></>} label="effects">
+      {of.unfinished ? <p>{tx("Unfinished: {why}", { why: <English>{of.unfinished}</English> })}</p> : null}
+      {of.effects.length ? <ul>{of.effects.map((one) => <li key={one.id}><Named effect={one} /></li>)}</ul> : <p>{t("None was named.")}</p>}
+      {updates.length ? <p>{t("Parameters that change: {names}.", { names: updates.map(([name]) => inWords(name)).join(", ") })}</p> : null}
+      {[of.remaining_gap, ...of.notes].filter(Boolean).map((text) => <p key={text} class="quiet"><English>{text}</English></p>)}
     </Section>
   );
 }
 
 function Named({ effect: { id, confidence, parameters, standard_error: errors, channels, band_hz: band, condition } }: { effect: Effect }): JSX.Element {
   const values = Object.entries(parameters).map(([name, value]) => `${name} = ${typeof value === "number" ? significant(value, 4) : value}${errors[name] ? ` ± ${significant(errors[name], 2)}` : ""}`);
-  return <><b>{inWords(id)}</b>{` (${percentOf(confidence)})${values.length ? `: ${values.join(", ")}` : ""}; seen in ${channels.join(", ")}, ${band.join(" to ")} Hz, ${condition}`}</>;
+  return <><b>{inWords(id)}</b>{` (${percentOf(confidence)})${values.length ? `: ${values.join(", ")}` : ""}; `}{tx("seen in {channels}, {lower} to {upper} Hz, {condition}", { channels: channels.join(", "), lower: band[0], upper: band[1], condition: <English>{condition}</English> })}</>;
 }
 
 export function Alternatives({ of }: { of: Diagnosis }): JSX.Element {
@@ -46,11 +48,11 @@ export function Alternatives({ of }: { of: Diagnosis }): JSX.Element {
   };
   const runs = (one: Alternative): boolean => may("engineer") && one.plan != null && files.includes(one.plan);
   return (
-    <Section title="Alternatives" label="alternatives" aside={of.alternatives.some(runs) && benches.length > 1 ? <label>on bench <select value={bench} onChange={(event) => setBench(event.currentTarget.value)}>{benches.map((one) => <option key={one}>{one}</option>)}</select></label> : null}>
+    <Section title={t("Alternatives")} label="alternatives" aside={of.alternatives.some(runs) && benches.length > 1 ? <label>{t("on bench")} <select value={bench} onChange={(event) => setBench(event.currentTarget.value)}>{benches.map((one) => <option key={one}>{one}</option>)}</select></label> : null}>
       <ul class="spaced">
         {of.alternatives.map((one) => (
-          <li key={one.id}>{`${inWords(one.id)} (${percentOf(one.confidence)}); test to distinguish them: ${one.separating_test} `}
-            {runs(one) ? <button type="button" disabled={!bench} aria-label={`Run the separating test on ${bench} for ${inWords(one.id)}`} onClick={() => void run(one)}>{`Run the separating test on ${bench}`}</button> : null}
+          <li key={one.id}>{tx("{effect} ({confidence}); test to distinguish them: {test}", { effect: inWords(one.id), confidence: percentOf(one.confidence), test: <English>{one.separating_test}</English> })}{" "}
+            {runs(one) ? <button type="button" disabled={!bench} aria-label={t("Run the separating test on {bench} for {effect}", { bench, effect: inWords(one.id) })} onClick={() => void run(one)}>{t("Run the separating test on {bench}", { bench })}</button> : null}
           </li>
         ))}
       </ul>

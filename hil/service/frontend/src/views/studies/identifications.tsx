@@ -6,40 +6,43 @@ import { post } from "../../api/client.ts";
 import type { Identification, Study } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
-import { figure, wordsOf } from "../../format.ts";
+import { figure, significant, wordsOf } from "../../format.ts";
+import { English } from "../../i18n/english.tsx";
+import { t } from "../../i18n/text.ts";
 import { roleOf } from "../../plot/frame.ts";
 import { CurvePlot, type Curve } from "../../plot/curve-plot.tsx";
 import { go, useQuery } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { Badge, Heading, inWords, Loaded, Scroll, Section } from "../../ui/parts.tsx";
 import { KeepModel } from "./keep-model.tsx";
-import { ChooseRuns, StudyList, StudyPage } from "./study-parts.tsx";
+import { ChooseRecordings, ChooseRuns, StudyList, StudyPage } from "./study-parts.tsx";
 import { runsFrom } from "./chosen-runs.ts";
 
 export function Identifications(): JSX.Element {
   const may = useMay();
   return (
     <>
-      <Heading>Identifications</Heading>
+      <Heading>{t("Identifications")}</Heading>
       {may("engineer") ? <Begin /> : null}
-      <Section title="All identifications" label="all"><StudyList kind="identification" /></Section>
+      <Section title={t("All identifications")} label="all"><StudyList kind="identification" /></Section>
     </>
   );
 }
 
 function Begin(): JSX.Element {
   const [query] = useQuery();
-  const [runs, setRuns] = useState(() => runsFrom(query.get("runs")));
+  const [runs, setRuns] = useState(() => runsFrom(query.get("runs"))), [recordings, setRecordings] = useState(() => runsFrom(query.get("recordings")));
   const begin = async (event: Event) => {
     event.preventDefault();
-    const study = await attempt(() => post<Study>("/identifications", { runs }));
+    const study = await attempt(() => post<Study>("/identifications", { runs, recordings }));
     if (study) go(to.identification(study.id));
   };
   return (
     <form class="card" onSubmit={(event) => void begin(event)}>
-      <h2>Identify a model</h2>
-      <ChooseRuns legend="Runs with chirps or multisines" chosen={runs} onChange={setRuns} />
-      <button type="submit" class="main" disabled={!runs.length}>Identify</button>
+      <h2>{t("Identify a model")}</h2>
+      <ChooseRuns legend={t("Runs with chirps or multisines")} chosen={runs} onChange={setRuns} />
+      <ChooseRecordings legend={t("Given recordings with chirps or multisines")} chosen={recordings} onChange={setRecordings} />
+      <button type="submit" class="main" disabled={!runs.length && !recordings.length}>{t("Identify")}</button>
     </form>
   );
 }
@@ -52,18 +55,18 @@ function Result({ study }: { study: Study }): JSX.Element | null {
   const done = (study.files ?? []).includes("identification.json");
   const found = useData<Identification>(done ? `/identifications/${study.id}` : null);
   if (!done) return null;
-  return <Loaded of={found} what="the identification">{(data) => <Identified data={data} />}</Loaded>;
+  return <Loaded of={found} what={t("the identification")}>{(data) => <Identified data={data} />}</Loaded>;
 }
 
 function Identified({ data }: { data: Identification }): JSX.Element {
   const { verdict, warnings, resonance_hz: resonance, chain } = data;
   return (
     <>
-      <p><Badge kind={verdict} />{` ${chain ? `a ${inWords(chain)} chain fits the data` : "no chain fits the data"}${resonance ? `, resonance ${figure(resonance, "Hz")}` : ""}`}</p>
-      {warnings.map((one) => <p class="bad" key={one}>{one}</p>)}
-      <KeepModel study={data.study} file={chain ? "physical.toml" : "model.toml"} what="model" />
-      <Section title="Responses to the motor torque" label="responses"><Responses data={data} /></Section>
-      <Section title="Parameters" label="parameters"><Parameters of={data.parameters} /></Section>
+      <p><Badge kind={verdict} /> {[chain ? t("a chain fits the data: {chain}", { chain: inWords(chain) }) : t("no chain fits the data"), resonance ? t("resonance {frequency}", { frequency: figure(resonance, "Hz") }) : ""].filter(Boolean).join(", ")}</p>
+      {warnings.map((one) => <p class="bad" key={one}><English>{one}</English></p>)}
+      <KeepModel study={data.study} file={chain ? "physical.toml" : "model.toml"} what={t("model")} />
+      <Section title={t("Responses to the motor torque")} label="responses"><Responses data={data} /></Section>
+      <Section title={t("Parameters")} label="parameters"><Parameters of={data.parameters} /></Section>
     </>
   );
 }
@@ -75,13 +78,13 @@ function Responses({ data }: { data: Identification }): JSX.Element {
   return (
     <div class="plots">
       {outputs.map((output) => <Response key={output.channel} output={output} x={x} />)}
-      <CurvePlot title="Coherence" label="Coherence of every output with the motor torque" curves={coherence} x={{ unit: "Hz", log: true }} y={{ unit: "", low: 0, high: 1.05 }} />
+      <CurvePlot title={t("Coherence")} label={t("Coherence of every output with the motor torque")} curves={coherence} x={{ unit: "Hz", log: true }} y={{ unit: "", low: 0, high: 1.05 }} />
     </div>
   );
 }
 
-const MEASURED = { name: "measured, 95 %", role: roleOf(1), looks: "dots" } as const;
-const FIT = { name: "fit", role: roleOf(0) };
+const MEASURED = { name: t("measured, 95 %"), role: roleOf(1), looks: "dots" } as const;
+const FIT = { name: t("fit"), role: roleOf(0) };
 type Output = Identification["outputs"][number];
 
 function Response({ output, x }: { output: Output; x: number[] }): JSX.Element {
@@ -92,20 +95,20 @@ function Response({ output, x }: { output: Output; x: number[] }): JSX.Element {
   ], [output, x]);
   return (
     <>
-      <CurvePlot title={`Gain to ${name}`} label={`Gain from motor torque to ${name}, measured and fitted`} curves={gain} x={{ unit: "Hz", log: true }} y={{ unit: "dB" }} />
-      <CurvePlot title={`Phase to ${name}`} label={`Phase from motor torque to ${name}, measured and fitted`} curves={phase} x={{ unit: "Hz", log: true }} y={{ unit: "°" }} />
+      <CurvePlot title={t("Gain to {name}", { name })} label={t("Gain from motor torque to {name}, measured and fitted", { name })} curves={gain} x={{ unit: "Hz", log: true }} y={{ unit: "dB" }} />
+      <CurvePlot title={t("Phase to {name}", { name })} label={t("Phase from motor torque to {name}, measured and fitted", { name })} curves={phase} x={{ unit: "Hz", log: true }} y={{ unit: "°" }} />
     </>
   );
 }
 
 // Five digits: intervals of a good identification differ in the fourth.
-const digits = (value: number | null): string => (value === null ? "–" : String(Number(value.toPrecision(5))).replace("-", "−"));
+const digits = (value: number | null): string => (value === null ? "–" : significant(value, 5));
 
 function Parameters({ of }: { of: Identification["parameters"] }): JSX.Element {
   return (
-    <Scroll label="Parameters of the model"><table>
-      <thead><tr><th scope="col">parameter</th><th scope="col" class="number">value</th><th scope="col" class="number">95 % interval</th><th scope="col">unit</th></tr></thead>
-      <tbody>{of.map((one) => <tr key={one.name}><th scope="row">{inWords(one.name)}</th><td class="number">{digits(one.value)}</td><td class="number">{one.lower === null ? "not known" : `${digits(one.lower)} to ${digits(one.upper)}`}</td><td>{one.unit}</td></tr>)}</tbody>
+    <Scroll label={t("Parameters of the model")}><table>
+      <thead><tr><th scope="col">{t("parameter")}</th><th scope="col" class="number">{t("value")}</th><th scope="col" class="number">{t("95 % interval")}</th><th scope="col">{t("unit")}</th></tr></thead>
+      <tbody>{of.map((one) => <tr key={one.name}><th scope="row">{inWords(one.name)}</th><td class="number">{digits(one.value)}</td><td class="number">{one.lower === null ? t("not known") : t("{lower} to {upper}", { lower: digits(one.lower), upper: digits(one.upper) })}</td><td>{one.unit}</td></tr>)}</tbody>
     </table></Scroll>
   );
 }

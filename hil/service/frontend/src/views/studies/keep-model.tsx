@@ -6,8 +6,9 @@ import { ask } from "../../api/client.ts";
 import type { Study } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt } from "../../data.ts";
+import { t, tx } from "../../i18n/text.ts";
 import { useMay } from "../../session.ts";
-import { Section } from "../../ui/parts.tsx";
+import { linkTo, Section } from "../../ui/parts.tsx";
 import { NameField } from "../../ui/name-field.tsx";
 import { textOf } from "./study-parts.tsx";
 
@@ -20,9 +21,9 @@ export function KeepModel({ study, file, what }: { study: Study; file: string; w
     if (await attempt(async () => { await ask("PUT", `/models/${name}`, await textOf(study, file)); return true; })) setSaved(name);
   };
   return (
-    <Section title={`Keep the ${what}`} label="keep">
-      <form class="row" onSubmit={(event) => void keep(event)}><NameField value={name} onChange={setName} /><button type="submit" class="main">{`Save the ${what}`}</button></form>
-      <p aria-live="polite">{saved ? <>{"Saved as "}<a href={to.model(saved)}>{saved}</a>{": for "}<a href={`${to.list("design")}?model=${saved}`}>design</a>{" and diagnosis."}</> : null}</p>
+    <Section title={t("Keep the {what}", { what })} label="keep">
+      <form class="row" onSubmit={(event) => void keep(event)}><NameField value={name} onChange={setName} /><button type="submit" class="main">{t("Save the {what}", { what })}</button></form>
+      <p aria-live="polite">{saved ? tx("Saved as {link}: for <design>design</design> and diagnosis.", { link: <a href={to.model(saved)}>{saved}</a>, design: linkTo(`${to.list("design")}?model=${saved}`) }) : null}</p>
     </Section>
   );
 }

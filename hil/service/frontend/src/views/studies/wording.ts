@@ -1,13 +1,16 @@
 // Numbers and names of a diagnosis in words.
 
-export const significant = (value: number, digits: number): string => String(Number(value.toPrecision(digits))).replace("-", "−");
+import { significant } from "../../format.ts";
+import { t } from "../../i18n/text.ts";
+
+export { significant };
 
 export const percentOf = (share: number): string => `${significant(100 * share, 3)} %`;
 
 // The name that a plan says of itself; the service files it under this.
 export function planNameOf(text: string): string {
   const found = /^name:\s*["']?([A-Za-z0-9_.-]+)/m.exec(text)?.[1];
-  if (!found) throw new Error("The plan of this test says no name.");
+  if (!found) throw new Error(t("The plan of this test says no name."));
   return found;
 }
 

@@ -5,6 +5,7 @@ import { ask } from "../../api/client.ts";
 import type { Person } from "../../api/types.ts";
 import { attempt, useData } from "../../data.ts";
 import { t } from "../../i18n/text.ts";
+import { kindInWords } from "../../ui/kinds.ts";
 import { Moment, Scroll, Section } from "../../ui/parts.tsx";
 
 export function People(): JSX.Element | null {
@@ -19,7 +20,7 @@ export function People(): JSX.Element | null {
           <tbody>
             {found.data.map((one) => (
               <tr key={one.id}>
-                <th scope="row">{one.name}</th><td>{one.role}</td><td><Moment at={one.signed_in_at} /></td><td>{one.subject}</td>
+                <th scope="row">{one.name}</th><td>{kindInWords(one.role)}</td><td><Moment at={one.signed_in_at} /></td><td>{one.subject}</td>
                 <td><button type="button" aria-label={t("Sign out {name}", { name: one.name })} onClick={() => signOut(one)}>{t("Sign out")}</button></td>
               </tr>
             ))}

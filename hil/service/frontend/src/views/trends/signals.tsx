@@ -2,6 +2,8 @@
 
 import type { JSX } from "preact";
 import type { Trend } from "../../api/types.ts";
+import { English } from "../../i18n/english.tsx";
+import { t, tn, tx } from "../../i18n/text.ts";
 
 const SHOWN = 6;
 const NELSON = /^nelson_(\d)$/;
@@ -12,12 +14,12 @@ export function Signals({ of }: { of: NonNullable<Trend["signals"]> }): JSX.Elem
     <>
       <ul class="signals">
         {[...of].reverse().slice(0, SHOWN).map((one) => (
-          <li key={`${one.rule} ${one.runs[0]}`} class={one.present ? "" : "quiet"}>{`${one.text} (Nelson's rule ${NELSON.exec(one.rule)?.[1] ?? one.rule}): ${stretchOf(one.runs)}${one.present ? ", still so" : ""}`}</li>
+          <li key={`${one.rule} ${one.runs[0]}`} class={one.present ? "" : "quiet"}>{tx("{pattern} (Nelson's rule {rule}): {runs}", { pattern: <English>{one.text}</English>, rule: NELSON.exec(one.rule)?.[1] ?? one.rule, runs: [stretchOf(one.runs), one.present ? t("still so") : ""].filter(Boolean).join(", ") })}</li>
         ))}
       </ul>
-      {of.length > SHOWN ? <p class="quiet">{`And ${of.length - SHOWN} earlier ones.`}</p> : null}
+      {of.length > SHOWN ? <p class="quiet">{tn("And {count} earlier one.", "And {count} earlier ones.", of.length - SHOWN)}</p> : null}
     </>
   );
 }
 
-export const stretchOf = (runs: number[]): string => (runs.length > 1 ? `runs ${runs[0]} to ${runs.at(-1)}` : `run ${runs[0]}`);
+export const stretchOf = (runs: number[]): string => (runs.length > 1 ? t("runs {first} to {last}", { first: runs[0] ?? 0, last: runs.at(-1) ?? 0 }) : t("run {run}", { run: runs[0] ?? 0 }));

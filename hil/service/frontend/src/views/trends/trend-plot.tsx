@@ -6,6 +6,7 @@ import uPlot from "uplot";
 import type { Trend } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { axis, HEIGHT, onWidth, roomy } from "../../plot/frame.ts";
+import { t } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { colour, coloured } from "../../theme.ts";
 
@@ -18,7 +19,7 @@ export function TrendPlot({ trend, label }: { trend: Trend; label: string }): JS
     const plot = new uPlot({
       width: Math.max(200, element.clientWidth), height: HEIGHT, legend: { show: false },
       scales: { x: { time: false, range: (_, low, high) => [(low ?? 0) - 1, (high ?? 1) + 1] }, y: { range: () => roomy(Math.min(...values), Math.max(...values)) } },
-      axes: [axis({ space: 60, size: 28, unit: "run" }), axis({ size: 56, unit: trend.unit })],
+      axes: [axis({ space: 60, size: 28, unit: t("run") }), axis({ size: 56, unit: trend.unit })],
       series: [{}, { stroke: () => colour("series-reference"), width: 1.2, points: { size: 7, fill: () => colour("series-gain"), stroke: () => colour("series-gain") } }],
       cursor: { drag: { x: false, y: false } },
       hooks: { draw: [(made) => decorate(made, trend, points)], ready: [(made) => made.over.addEventListener("click", () => open(made, points))] },

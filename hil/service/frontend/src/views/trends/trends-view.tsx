@@ -3,6 +3,7 @@
 import type { JSX } from "preact";
 import type { RunChoices } from "../../api/types.ts";
 import { useData } from "../../data.ts";
+import { t } from "../../i18n/text.ts";
 import { useQuery } from "../../router.ts";
 import { Heading } from "../../ui/parts.tsx";
 import { Trends } from "./trends.tsx";
@@ -14,12 +15,12 @@ export function TrendsView(): JSX.Element {
   const offered = (all: string[], one: string) => (all.includes(one) || !one ? all : [one, ...all]);
   return (
     <>
-      <Heading>Trends</Heading>
+      <Heading>{t("Trends")}</Heading>
       <div class="row small">
-        <label>{"Bench "}<select value={bench} onChange={(event) => put({ bench: event.currentTarget.value })}>{offered(choices?.benches ?? [], bench).map((one) => <option key={one}>{one}</option>)}</select></label>
-        <label>{"Plan "}<select value={plan} onChange={(event) => put({ plan: event.currentTarget.value })}>{offered(choices?.plans ?? [], plan).map((one) => <option key={one}>{one}</option>)}</select></label>
+        <label>{t("Bench")}{" "}<select value={bench} onChange={(event) => put({ bench: event.currentTarget.value })}>{offered(choices?.benches ?? [], bench).map((one) => <option key={one}>{one}</option>)}</select></label>
+        <label>{t("Plan")}{" "}<select value={plan} onChange={(event) => put({ plan: event.currentTarget.value })}>{offered(choices?.plans ?? [], plan).map((one) => <option key={one}>{one}</option>)}</select></label>
       </div>
-      {bench && plan ? <Trends key={`${bench} ${plan}`} bench={bench} plan={plan} empty="No run of this plan has ended on this bench with a value of a criterion." /> : null}
+      {bench && plan ? <Trends key={`${bench} ${plan}`} bench={bench} plan={plan} empty={t("No run of this plan has ended on this bench with a value of a criterion.")} /> : null}
     </>
   );
 }

@@ -5,6 +5,8 @@ import { useEffect, useState } from "preact/hooks";
 import type { Trend } from "../../api/types.ts";
 import { useData } from "../../data.ts";
 import { figure, limitText } from "../../format.ts";
+import { English } from "../../i18n/english.tsx";
+import { t } from "../../i18n/text.ts";
 import { useQuery } from "../../router.ts";
 import { Section } from "../../ui/parts.tsx";
 import { Signals } from "./signals.tsx";
@@ -32,14 +34,14 @@ export function Trends({ bench, plan, empty }: { bench: string; plan: string; em
   const trend = found.find((one) => one.criterion === criterion) ?? found[0];
   if (!trend) return empty && asked.data ? <p class="quiet">{empty}</p> : null;
   return (
-    <Section title={`Trend over runs of ${plan}`} label="trend">
+    <Section title={t("Trend over runs of {plan}", { plan })} label="trend">
       <Drifting of={found} chosen={trend.criterion} onChoose={setCriterion} />
       <div class="row small">
-        <label>Criterion <select value={trend.criterion} onChange={(event) => setCriterion(event.currentTarget.value)}>{found.map((one) => <option key={one.criterion}>{one.criterion}</option>)}</select></label>
-        <label>of <select value={dut} onChange={(event) => setDut(event.currentTarget.value)}><option value="">all devices</option>{devices.map((one) => <option key={one}>{one}</option>)}</select></label>
+        <label>{t("Criterion")} <select value={trend.criterion} onChange={(event) => setCriterion(event.currentTarget.value)}>{found.map((one) => <option key={one.criterion}>{one.criterion}</option>)}</select></label>
+        <label>{t("of")} <select value={dut} onChange={(event) => setDut(event.currentTarget.value)}><option value="">{t("all devices")}</option>{devices.map((one) => <option key={one}>{one}</option>)}</select></label>
       </div>
       <p class="quiet">{figuresOf(trend)}</p>
-      <TrendPlot trend={trend} label={`${trend.criterion} over ${trend.points.length} runs: ${figuresOf(trend)}`} />
+      <TrendPlot trend={trend} label={t("{criterion} over {count} runs: {figures}", { criterion: trend.criterion, count: trend.points.length, figures: figuresOf(trend) })} />
       <Signals of={trend.signals ?? []} />
     </Section>
   );
@@ -48,8 +50,8 @@ export function Trends({ bench, plan, empty }: { bench: string; plan: string; em
 function figuresOf(trend: Trend): string {
   const limits = limitText(trend.upper, trend.lower, trend.unit), count = trend.count ?? 0;
   const hasCpk = trend.cpk !== null && trend.cpk !== undefined;
-  const cpk = hasCpk ? `, Cpk ${figure(trend.cpk)} (95 %: ${figure(trend.cpk_lower)} to ${figure(trend.cpk_upper)}, ${count} runs)` : limits !== "–" && count < LEAST ? `, Cpk: too few runs (${count} of ${LEAST})` : "";
-  return `mean ${figure(trend.mean, trend.unit)}${limits === "–" ? "" : `, limit ${limits}`}${cpk}`;
+  const cpk = hasCpk ? t("Cpk {cpk} (95 %: {lower} to {upper}, {count} runs)", { cpk: figure(trend.cpk), lower: figure(trend.cpk_lower), upper: figure(trend.cpk_upper), count }) : limits !== "–" && count < LEAST ? t("Cpk: too few runs ({count} of {least})", { count, least: LEAST }) : "";
+  return [t("mean {value}", { value: figure(trend.mean, trend.unit) }), limits === "–" ? "" : t("limit {limit}", { limit: limits }), cpk].filter(Boolean).join(", ");
 }
 
 // A drift is told before it fails: criteria whose newest value is part of a pattern that chance seldom makes.
@@ -57,13 +59,13 @@ function Drifting({ of, chosen, onChoose }: { of: Trend[]; chosen: string; onCho
   const drifting = of.filter((one) => (one.signals ?? []).some((signal) => signal.present));
   if (!drifting.length) return null;
   return (
-    <p class="notice" role="status">{"May drift: "}
-      {drifting.map((one) => <button type="button" class="plain" key={one.criterion} aria-pressed={one.criterion === chosen} onClick={() => onChoose(one.criterion)}>{`${one.criterion} (${reasonOf(one)})`}</button>)}
+    <p class="notice" role="status">{t("May drift:")}{" "}
+      {drifting.map((one) => <button type="button" class="plain" key={one.criterion} aria-pressed={one.criterion === chosen} onClick={() => onChoose(one.criterion)}><English>{`${one.criterion} (${reasonOf(one)})`}</English></button>)}
     </p>
   );
 }
 
 function reasonOf({ signals = [] }: Trend): string {
   const present = signals.filter((signal) => signal.present), more = present.length - 1;
-  return `${present[0]?.text ?? ""}${more > 0 ? `, and ${more} more` : ""}`;
+  return more > 0 ? t("{pattern}, and {count} more", { pattern: present[0]?.text ?? "", count: more }) : present[0]?.text ?? "";
 }

@@ -1,0 +1,58 @@
+// What the operator is asked: the words, the picture beside them, and how long there is for an answer.
+
+import type { JSX } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import { API, post } from "../api/client.ts";
+import { serviceNowMs } from "../api/clock.ts";
+import type { Prompt } from "../api/types.ts";
+import { attempt } from "../data.ts";
+import { roughly } from "../format.ts";
+import { t } from "../i18n/text.ts";
+import { useMay } from "../session.ts";
+
+const LITTLE_S = 30;
+
+// An answer reaches the run only while whoever drives its bench is there.
+export function PromptCard({ prompt, run, reached }: { prompt: Prompt; run: number; reached: boolean }): JSX.Element {
+  const may = useMay(), [text, setText] = useState("");
+  const send = (event: Event) => {
+    event.preventDefault();
+    void attempt(() => post(`/runs/${run}/answer`, { text }));
+    setText("");
+  };
+  return (
+    <section class="prompt" aria-label={t("Question")}>
+      <div>
+        <p class="asked" role="status">{prompt.text}</p>
+        <Countdown until={prompt.answer_by} />
+        {may("operator") && reached ? (
+          <form class="row" onSubmit={send}>
+            <label class="field">{t("Answer")}<input maxLength={500} autocomplete="off" value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
+            <button type="submit" class="main">{t("Continue")}</button>
+          </form>
+        ) : null}
+      </div>
+      {prompt.picture ? <img src={`${API}/pictures/${encodeURIComponent(prompt.picture)}`} alt={t("Picture of the question: {file}", { file: prompt.picture })} /> : null}
+    </section>
+  );
+}
+
+// Without an answer in time the run ends.
+function Countdown({ until }: { until: string }): JSX.Element {
+  const left = Math.max(0, Math.round((Date.parse(until) - useNow()) / 1000));
+  return (
+    <p class={left <= LITTLE_S ? "countdown bad" : "countdown"} role="timer">
+      {left > 0 ? t("{time} left to answer; then the run ends", { time: roughly(left) }) : t("The time for an answer is over.")}
+    </p>
+  );
+}
+
+// The service's clock, to the second.
+export function useNow(): number {
+  const [now, setNow] = useState(serviceNowMs);
+  useEffect(() => {
+    const timer = setInterval(() => setNow(serviceNowMs()), 1000);
+    return () => clearInterval(timer);
+  }, []);
+  return now;
+}

@@ -1,0 +1,62 @@
+// The wall of a control room: all benches, or one, to be read from five metres. It takes no input and follows by itself.
+
+import type { JSX } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import { to } from "../addresses.ts";
+import { clockTime, moment, roughly } from "../format.ts";
+import { English } from "../i18n/english.tsx";
+import { t } from "../i18n/text.ts";
+import { showAs } from "../theme.ts";
+import { Badge, verdictOf } from "../ui/parts.tsx";
+import { holderOf, leftOf, nextIn, titleOf, wordOf } from "./bench-words.ts";
+import { useNow } from "./panel-prompt.tsx";
+import { useWall, type Shown } from "./wall-data.ts";
+
+const OLD_S = 10;
+const VERDICTS = { all: 4, one: 6 };
+
+export function Wall({ bench }: { bench: string | null }): JSX.Element {
+  const { shown, missing, atMs } = useWall(bench), now = useNow(), began = useBegan();
+  useEffect(() => showAs("dark"), []);
+  const ageS = Math.round((performance.now() - (atMs || began)) / 1000), old = ageS > OLD_S;
+  const columns = Math.ceil(Math.sqrt(Math.max(1, shown.length)));
+  return (
+    <div class={old ? "wall old" : "wall"} style={{ "--columns": columns }}>
+      <header>
+        <h1>{bench === null ? t("All benches") : t("Bench {bench}", { bench })}</h1>
+        <p class="clock">{clockTime(now)}</p>
+      </header>
+      {old ? <p class="alarm" role="alert">{t("NOT CURRENT: no answer of the service for {time}", { time: roughly(ageS) })}</p> : null}
+      {missing ? <p class="alarm">{t("The service has no bench of this name.")}</p> : null}
+      {atMs && !missing && !shown.length ? <p>{t("No bench yet.")}</p> : null}
+      <ul>{shown.map((one) => <Card key={one.bench.name} of={one} nowMs={now} alone={bench !== null} />)}</ul>
+    </div>
+  );
+}
+
+const useBegan = (): number => useState(() => performance.now())[0];
+
+function Card({ of: { bench, running, queue, latest }, nowMs, alone }: { of: Shown; nowMs: number; alone: boolean }): JSX.Element {
+  const left = running ? leftOf(running, nowMs) : null;
+  const next = nextIn(queue), has = running?.requested_by || holderOf(bench);
+  return (
+    <li class={`bench ${running?.prompt ? "in_use" : bench.state}`}>
+      <h2><a href={to.wall(bench.name)}>{bench.name}</a> {bench.title ? <small>{bench.title}</small> : null}</h2>
+      <p class="state">{wordOf(bench, running)}</p>
+      {has ? <p>{running ? t("by {person}", { person: has }) : t("reserved by {person}", { person: has })}</p> : null}
+      {running ? (
+        <>
+          <p class="plan">{titleOf(running)}</p>
+          <progress max={1} value={running.share ?? 0} aria-label={t("Progress of run {run}", { run: running.id })} />
+          <p>{left === null ? <English>{running.doing}</English> : t("about {time} left", { time: roughly(left) })}</p>
+        </>
+      ) : bench.why ? <p><English>{bench.why}</English></p> : null}
+      {next ? <p class="quiet">{queue.length > 1 ? t("Next: {plan}, by {person}, and {count} more", { plan: titleOf(next), person: next.requested_by, count: queue.length - 1 }) : t("Next: {plan}, by {person}", { plan: titleOf(next), person: next.requested_by })}</p> : null}
+      <ol aria-label={t("Last verdicts")}>
+        {latest.slice(0, alone ? VERDICTS.one : VERDICTS.all).map((run) => (
+          <li key={run.id}><Badge kind={verdictOf(run)} /> <span>{titleOf(run)}</span> {run.ended_at ? <time dateTime={run.ended_at} title={run.ended_at}>{moment(run.ended_at)}</time> : null}</li>
+        ))}
+      </ol>
+    </li>
+  );
+}

@@ -1,0 +1,55 @@
+// What the operator's panel and the wall say of a bench, and when they sound.
+
+import assert from "node:assert/strict";
+import test from "node:test";
+import type { Bench, Run } from "../../../../hil/service/frontend/src/api/types.ts";
+import type { BenchState } from "../../../../hil/service/frontend/src/live.ts";
+import { soundOf } from "../../../../hil/service/frontend/src/ui/sound.ts";
+import { aboutBench, leftOf, nextOf, wordOf } from "../../../../hil/service/frontend/src/views/bench-words.ts";
+
+const RUN = { id: 7, plan: "steps", title: "Steps", requested_by: "anna", doing: "tip_in", share: 0.25, state: "running", started_at: "2026-11-28T10:00:00Z" } as Run;
+const QUESTION = { text: "Is the cage shut?", answer_by: "2026-11-28T10:10:00Z", picture: "" };
+const stateOf = (state: Bench["state"], running: Run | null = null, queue: Run[] = []): BenchState => ({ bench: { name: "sim", state, lease: "" } as Bench, running, message: "", queue, viewers: [] });
+
+test("a bench is said in one word", () => {
+  const words = (state: BenchState) => wordOf(state.bench, state.running);
+  assert.deepEqual(
+    [stateOf("free"), stateOf("running", RUN), stateOf("running", { ...RUN, doing: "held: oil" }), stateOf("running", { ...RUN, prompt: QUESTION }), stateOf("emergency_stop", RUN)].map(words),
+    ["Free", "Running", "Held", "Question", "Emergency stop"],
+  );
+});
+
+test("what comes next is the queue's first, unless somebody has to do something before", () => {
+  const waiting = { ...RUN, id: 8, state: "queued" } as Run;
+  assert.equal(nextOf(stateOf("free")), "Nothing waits.");
+  assert.equal(nextOf(stateOf("running", RUN, [waiting, waiting])), "Next: Steps, by anna, and 1 more");
+  assert.match(nextOf(stateOf("free", null, [{ ...waiting, state: "waiting_approval" }])), /when an engineer approves/);
+  assert.match(nextOf(stateOf("running", { ...RUN, prompt: QUESTION }, [waiting])), /question is answered/);
+  assert.match(nextOf(stateOf("emergency_stop", null, [waiting])), /engineer resets/);
+});
+
+test("a run that waits for somebody's reservation is not next while another may start", () => {
+  const held = { ...RUN, id: 8, state: "queued", waits_for: { who: "chen" } } as Run, free = { ...RUN, id: 9, state: "queued", requested_by: "ben" } as Run;
+  assert.equal(nextOf(stateOf("free", null, [held, free])), "Next: Steps, by ben, and 1 more");
+  assert.equal(nextOf(stateOf("free", null, [held])), "Next: Steps, by anna");
+});
+
+test("who has a bench by a reservation under way is named as who has it for an hour", () => {
+  const bench = stateOf("free").bench;
+  assert.equal(aboutBench({ ...bench, reserved_by: "chen" }, "Axle 1"), "Axle 1, reserved by chen");
+  assert.equal(aboutBench({ ...bench, lease: "anna" }, "Axle 1"), "Axle 1, reserved by anna");
+});
+
+test("what is left is as long as what was, by their shares", () => {
+  assert.equal(leftOf(RUN, Date.parse("2026-11-28T10:01:00Z")), 180);
+  assert.equal(leftOf({ ...RUN, share: 0 }, Date.parse("2026-11-28T10:01:00Z")), null);
+});
+
+test("a trip, a question and an end sound once, and the first look at a bench does not", () => {
+  const running = stateOf("running", RUN), asked = stateOf("running", { ...RUN, prompt: QUESTION }), stopped = stateOf("emergency_stop", RUN);
+  assert.equal(soundOf(null, stopped), null);
+  assert.equal(soundOf(running, stopped), "trip");
+  assert.equal(soundOf(stopped, stateOf("emergency_stop")), "end");
+  assert.equal(soundOf(running, stateOf("running", { ...RUN, doing: "held: oil" })), "trip");
+  assert.deepEqual([soundOf(running, asked), soundOf(asked, asked), soundOf(asked, running), soundOf(asked, stateOf("free"))], ["prompt", null, null, "end"]);
+});

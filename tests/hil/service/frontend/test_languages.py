@@ -1,0 +1,133 @@
+"""The page in German and Japanese: chosen or the browser's, whole, and as easy to use as in English."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import pytest
+from playwright import sync_api as playwright
+
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, to
+from tests.hil.service.looks import refuse_hard_to_use
+from tests.hil.service.served import SHORT, Served, served
+
+pytestmark = IN_A_BROWSER
+ADDRESSES = (
+    "benches",
+    "benches/sim",
+    "benches/sim/panel",
+    "wall",
+    "wall/sim",
+    "runs?criterion=s.peak_shaft_torque",
+    "runs/1",
+    "compare?runs=1,2",
+    "trends?bench=sim&plan=short",
+    "plans",
+    "plans/acceptance",
+    "plans?write=new",
+    "models",
+    "models/three_inertia?write=on",
+    "controllers",
+    "bench-files",
+    "bench-files?write=new",
+    "recordings",
+    "design",
+    "identifications",
+    "diagnoses",
+    "campaigns",
+    "audit",
+    "settings",
+    "nothing",
+)
+
+
+@pytest.fixture(scope="module")
+def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """A service with two runs that ended."""
+    folder = tmp_path_factory.mktemp("languages")
+    with served(folder / "data", "--rate", "1000", state=folder / "state") as service:
+        service.give("short", SHORT.replace("name: short", "name: short\ntitle: A short plan"))
+        for torque_nm in (100, 150):
+            service.over(service.queue(values={"torque_nm": torque_nm}))
+        yield service
+
+
+IN_GERMAN = pytest.mark.parametrize("locale", ["de-CH"])
+
+
+@IN_GERMAN
+def test_the_browsers_language_is_taken_and_another_is_chosen_in_the_settings(
+    page: playwright.Page, there: Served
+) -> None:
+    to(page, there, "settings")
+    expect(heading(page, "Einstellungen")).to_be_visible()
+    expect(page.locator("html")).to_have_attribute("lang", "de")
+    choice(page, "Sprache").select_option("日本語")
+    expect(heading(page, "設定")).to_be_visible()
+    page.reload()
+    expect(page.locator("html")).to_have_attribute("lang", "ja")
+    choice(page, "言語").select_option("")
+    expect(heading(page, "Einstellungen")).to_be_visible()
+
+
+def test_readers_of_english_load_no_catalogue(page: playwright.Page, there: Served) -> None:
+    loaded: list[str] = []
+    page.on("request", lambda request: loaded.append(request.url))
+    to(page, there, "benches")
+    expect(heading(page, "Benches")).to_be_visible()
+    assert [url for url in loaded if re.search(r"/assets/(de|ja)-", url)] == []
+    assert len([url for url in loaded if url.endswith(".js")]) == 1
+
+
+@IN_GERMAN
+def test_numbers_and_moments_are_those_of_the_language_and_iso_where_the_pointer_stays(
+    page: playwright.Page, there: Served
+) -> None:
+    to(page, there, "runs?criterion=s.peak_shaft_torque")
+    row = page.locator("tbody tr").first
+    expect(row).to_contain_text("bestanden")
+    ended = row.locator("time")
+    expect(ended).to_have_text(re.compile(r"^\d\d\.\d\d\.\d{4}, \d\d:\d\d$"))
+    expect(ended).to_have_attribute("title", re.compile(r"^\d{4}-\d\d-\d\dT"))
+
+
+@IN_GERMAN
+def test_words_of_the_service_are_read_out_as_english(page: playwright.Page, there: Served) -> None:
+    to(page, there, "runs/1")
+    words = page.get_by_role("region", name="Abschnitte und Ereignisse", exact=True).locator("[lang=en]")
+    expect(words.filter(has_text="confirmed by").first).to_be_visible()
+
+
+@IN_GERMAN
+def test_commands_are_found_by_their_names_in_either_language(page: playwright.Page, there: Served) -> None:
+    to(page, there, "benches")
+    expect(heading(page, "Prüfstände")).to_be_visible()
+    for words in ("farben: dunkel", "colours: dark"):
+        page.keyboard.press("Control+k")
+        page.keyboard.type(words)
+        expect(page.get_by_role("dialog").locator("[aria-selected=true]")).to_contain_text("Farben: dunkel")
+        page.keyboard.press("Escape")
+
+
+@pytest.mark.parametrize("locale", ["de", "ja"])
+@pytest.mark.parametrize("address", ADDRESSES)
+def test_no_view_is_harder_to_use_than_in_english(
+    page: playwright.Page, there: Served, locale: str, address: str
+) -> None:
+    to(page, there, address)
+    expect(page.locator("h1").first).to_be_visible()
+    expect(page.locator("main").get_by_text(re.compile("Laden:|読み込み中"))).to_have_count(0)
+    assert page.locator("html").get_attribute("lang") == locale
+    refuse_hard_to_use(page)
+
+
+def test_a_catalogue_that_does_not_come_leaves_the_page_in_english(
+    browser: playwright.Browser, there: Served
+) -> None:
+    with browser.new_context(locale="de") as context:
+        page = context.new_page()
+        page.route(re.compile("/assets/de-"), lambda route: route.abort())
+        to(page, there, "benches/sim")
+        expect(page.get_by_role("button", name="Emergency stop sim")).to_be_visible()
+        expect(page.locator("html")).to_have_attribute("lang", "en")
