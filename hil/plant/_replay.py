@@ -12,8 +12,7 @@ from hil.core.effects import EFFECTS, Stage
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
-from hil.plant import _starts, kernel, slots
-from hil.plant._angles import turned
+from hil.plant import _recorded, kernel, slots
 from hil.plant._batch_simulation import simulate_many
 from hil.plant._functions import respond_many
 from hil.plant._stability import LONGEST_STEP_S, refuse_divergence, refuse_too_stiff
@@ -150,7 +149,7 @@ def _along(
         return {}
     begin = np.array([[start.motor_speed_rad_s, start.wheel_speed_rad_s, start.shaft_torque_nm]])
     sensors = np.stack([sensor_of(model, name) for name in OUTPUTS])[None]
-    angles = turned(recorded, dt, ratio, start.wheel_angle_rad)
+    angles = _recorded.turned(recorded, dt, ratio, start.wheel_angle_rad)
     rests = start.motor_torque_nm is not None  # a sample before the first shows that no torque has acted
     if rests:
         torque = np.concatenate([[start.motor_torque_nm], torque])
@@ -233,9 +232,9 @@ def settled_start(
         measured: n x 3, in the order of `OUTPUTS`; NaN where a channel was not recorded.
         load_nm: shape (n,), brakes the wheels.
     """
-    count = min(len(torque_nm), round(_starts.SECONDS / dt))
+    count = min(len(torque_nm), round(_recorded.SECONDS / dt))
     torque, measured = torque_nm[:count], measured[:count]
-    read, errors = (np.array(one) for one in zip(*map(_starts.beginning, measured.T), strict=True))
+    read, errors = (np.array(one) for one in zip(*map(_recorded.beginning, measured.T), strict=True))
     ratio = gear_ratio_of(model)
     if ratio:
         followed = np.array([ratio, 1.0 / ratio, np.nan])
@@ -244,16 +243,16 @@ def settled_start(
     read, errors = np.nan_to_num(read), np.nan_to_num(errors)
     rests = _rests(model, float(read[2]), float(torque[0]))
 
-    def begun(at: Array) -> Start:
+    def from_states(at: Array) -> Start:
         motor, wheel, shaft = at.tolist()
         return Start(motor, wheel, shaft, 0.0 if rests else None, wheel_angle_rad)
 
     def show(at: Array) -> Array:
         load = None if load_nm is None else load_nm[:count]
-        channels = simulate(model, torque, dt, begun(at), load_nm=load)
+        channels = simulate(model, torque, dt, from_states(at), load_nm=load)
         return np.column_stack([channels.get(name, np.full(count, np.nan)) for name in OUTPUTS])
 
-    return begun(_starts.settled(read, errors, _unrecorded(model, torque, dt), measured, show))
+    return from_states(_recorded.settled(read, errors, _unrecorded(model, torque, dt), measured, show))
 
 
 def _unrecorded(model: Model, torque_nm: Array, dt: float) -> Array:

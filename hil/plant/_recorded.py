@@ -1,5 +1,6 @@
-"""Where a replay begins: what first samples show, and within their noise what the next seconds tell.
+"""What a replay takes from a recording: where it begins, and the angles that its ripples follow.
 
+It begins at what first samples show, and within their noise where the next seconds suit best.
 A speed read from twenty samples is off by a quarter of their noise. Without drag a replay keeps that offset
 to its end, which no model is to blame for.
 """
@@ -45,7 +46,7 @@ def white_noise(values: Array) -> float:
 
 
 def settled(
-    first: Array, errors: Array, carried: Array, measured: Array, show: Callable[[Array], Array]
+    first: Array, errors: Array, unrecorded: Array, measured: Array, show: Callable[[Array], Array]
 ) -> Array:
     """Motor speed, wheel speed (rad/s) and shaft torque (N m) that suit the beginning of a recording best.
 
@@ -55,11 +56,11 @@ def settled(
     Args:
         first: (3,), what first samples show; a channel that was not recorded follows from others.
         errors: (3,), standard errors of that.
-        carried: (3,), what a torque that nobody recorded may have added before the first sample.
+        unrecorded: (3,), what a torque that nobody recorded may have added before the first sample.
         measured: n x 3, NaN where a channel was not recorded.
         show: gives the outputs (n x 3) from a start.
     """
-    unsure = np.hypot(errors, carried)
+    unsure = np.hypot(errors, unrecorded)
     there = np.isfinite(measured[0])
     if not there.any() or not np.any(unsure > 0.0):
         return first
@@ -75,7 +76,7 @@ def settled(
     start = _least(first, unsure, steps, away, np.where(there, 1.0, 0.0))
     misfit = np.maximum(np.mean(away(start) ** 2, axis=0), 1.0)
     counts = 1.0 / (1.0 + (misfit - 1.0) * len(measured) / _VALUES) / misfit
-    unsure = np.hypot(errors, carried / np.max(misfit))  # of a wrong model it would take up the misfit
+    unsure = np.hypot(errors, unrecorded / np.max(misfit))  # of a wrong model it would take up the misfit
     return _least(first, unsure, steps, away, np.where(there, counts, 0.0))
 
 
@@ -103,3 +104,23 @@ def _least(first: Array, unsure: Array, steps: Array, away: Callable[[Array], Ar
             break
         start, left = trial, after
     return start
+
+
+def turned(samples: Array, dt: float, gear_ratio: float, first_wheel_angle_rad: float = 0.0) -> Array:
+    """Wheel and rotor angle in rad at every sample (n x 2), by the trapezoidal rule.
+
+    A simulated angle drifts off as long as a model is not right to the last digit, and takes the phase of a
+    ripple with it; the measured one does not.
+
+    Args:
+        samples: n x 2 or more, motor and wheel speed in rad/s; a column of NaN follows from the other.
+    """
+    motor, wheel = samples[:, 0], samples[:, 1]
+    if not np.isfinite(wheel[0]):
+        wheel = motor / gear_ratio
+    if not np.isfinite(motor[0]):
+        motor = wheel * gear_ratio
+    speeds = np.nan_to_num(np.column_stack([wheel, motor]))
+    ways = np.cumsum(0.5 * dt * (speeds[1:] + speeds[:-1]), axis=0)
+    first = first_wheel_angle_rad * np.array([1.0, gear_ratio])
+    return np.asarray(first + np.concatenate([np.zeros((1, 2)), ways]), dtype=float)

@@ -11,7 +11,7 @@ from hil.core.channels import INPUT, TIME
 from hil.core.model import Model
 from hil.core.recording import Recording
 from hil.plant import Start, replay, simulate
-from hil.plant._starts import beginning, settled
+from hil.plant._recorded import beginning, settled
 
 STEP_S = 1e-3
 NOISE = {"motor_speed_rad_s": 0.5, "wheel_speed_rad_s": 0.05, "shaft_torque_nm": 3.0}
