@@ -24,7 +24,7 @@ def test_an_untouched_file_matches_and_a_changed_one_does_not(recording: Recordi
     }
 
 
-def test_calibration_is_judged_at_the_start_of_the_run(recording: Recording) -> None:
+def test_calibration_is_judged_rising_of_the_run(recording: Recording) -> None:
     left, right = provenance.calibration_facts(recording)
     assert (left.name, left.state) == ("Shaft torque left", "good")
     assert right.state == "bad"

@@ -106,9 +106,7 @@ class Problem:
             seen = np.clip(np.nan_to_num(seen, nan=_FAR), -_FAR, _FAR)
         first = seen[:, 0] / self.noise[one.has]
         windows = self.spectrum.weighed(seen, one.has, one.rate_hz, one.lowest_hz)
-        return np.concatenate(
-            [windows, self.spectrum.at_the_start(seen, one.has, one.rate_hz), first], axis=1
-        )
+        return np.concatenate([windows, self.spectrum.rising(seen, one.has, one.rate_hz), first], axis=1)
 
     def start_basis(self, index: int, hypothesis: Hypothesis, start: Array) -> tuple[Array, Array, Array]:
         """Change of weighed errors with a recording's start (numbers x states), sizes, and its basis."""

@@ -63,7 +63,7 @@ class Spectrum:
         transform = transformed(values, rate_hz) * self.weights(length, rate_hz, lowest_hz)[:, channels]
         return np.asarray(transform.reshape(len(values), -1).view(float), dtype=float)
 
-    def at_the_start(self, values: Array, channels: Channels, rate_hz: float) -> Array:
+    def rising(self, values: Array, channels: Channels, rate_hz: float) -> Array:
         """sets x blocks x channels as weighed numbers of the beginning, where windows weigh little.
 
         The first window rises from zero: what it leaves of a block's weight counts by the whole variance.

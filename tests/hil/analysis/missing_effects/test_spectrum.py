@@ -84,14 +84,14 @@ def test_what_is_sent_back_is_the_slope_of_half_the_squares(blocks: int) -> None
 
 
 def test_the_beginning_counts_as_much_as_the_middle() -> None:
-    """Windows that rise from zero leave the first half of one to `at_the_start`; together each block counts once."""
+    """Windows that rise from zero leave the first half of one to `rising`; together each block counts once."""
     errors = np.random.default_rng(3).normal(0.0, 1.0, (1, 20_000, 2))
     errors[:, 500:] = 0.0  # of the first window, half
     channels = np.array([True, False, True])
     spectrum = white(np.full(3, 0.5), RATE_HZ)
     both = (
         spectrum.weighed(errors, channels, RATE_HZ, 0.0),
-        spectrum.at_the_start(errors, channels, RATE_HZ),
+        spectrum.rising(errors, channels, RATE_HZ),
     )
     whole = sum(float(np.sum(one**2)) for one in both)
     assert whole == pytest.approx(np.sum(errors**2) / 0.25, rel=0.1)

@@ -152,7 +152,7 @@ def test_no_candidate_fails_what_any_device_must_do_and_the_start_does():
     assert "device.phase.response_time" in trial.limits
 
 
-def test_what_the_start_fails_may_not_get_worse_and_is_told():
+def test_whrising_fails_may_not_get_worse_and_is_told():
     trial = trial_of(plan_text=LONG + "device: {response_s: 0.1}\n")
     start, slow, quick = (trial.tried(values, 0) for values in ({}, SLOW, QUICK))
     assert start.device["phase.response_time"] < 0.0
