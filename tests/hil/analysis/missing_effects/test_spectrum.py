@@ -84,7 +84,7 @@ def test_what_is_sent_back_is_the_slope_of_half_the_squares(blocks: int) -> None
 
 
 def test_the_beginning_counts_as_much_as_the_middle() -> None:
-    """Windows that rise from zero leave the first half of one to `rising`; together each block counts once."""
+    """What the first window leaves of a block, as it rises, `rising` adds: each block counts once."""
     errors = np.random.default_rng(3).normal(0.0, 1.0, (1, 20_000, 2))
     errors[:, 500:] = 0.0  # of the first window, half
     channels = np.array([True, False, True])
