@@ -41,12 +41,16 @@ from hil.api_schemas.api import (
 from hil.api_schemas.campaign import CampaignData, CampaignExample, CampaignFindings, CampaignWanted
 from hil.api_schemas.comparison import ComparisonData, TracesData
 from hil.api_schemas.design import (
+    CloudData,
+    CloudWanted,
     ControllerData,
     DesignData,
     DraftData,
     DraftWanted,
     ModelData,
     PlanCopyWanted,
+    SegmentsData,
+    SegmentsWanted,
 )
 from hil.api_schemas.notes import NoteData, NoteWanted, RunNotes
 from hil.api_schemas.run_list import FoundRuns, RunsWanted
@@ -266,6 +270,14 @@ class Client(Requests):
     def draft(self, wanted: DraftWanted) -> DraftData:
         """Loops, margins and steps of a controller on a model."""
         return self._one(DraftData, "POST", "/drafts", wanted, within_s=_FORECAST_WITHIN_S)
+
+    def draft_cloud(self, wanted: CloudWanted) -> CloudData:
+        """A draft on cars drawn around its model."""
+        return self._one(CloudData, "POST", "/drafts/clouds", wanted, within_s=_FORECAST_WITHIN_S)
+
+    def draft_segments(self, wanted: SegmentsWanted) -> SegmentsData:
+        """Margins of a plan's controllers and of a draft in each segment."""
+        return self._one(SegmentsData, "POST", "/drafts/segments", wanted, within_s=_FORECAST_WITHIN_S)
 
     def design(self, wanted: DraftWanted) -> DesignData:
         """A controller's file, judged on every plant that the model's uncertainty allows."""

@@ -193,6 +193,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         await service.campaigns.close()
         service.worker_pool.close()
         service.drawing.close()
+        service.clouds.close()
         service.viewing.close()
         service.upload_reader.close()
         for bench in list(service.benches):

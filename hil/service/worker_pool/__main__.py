@@ -26,6 +26,8 @@ TASKS = {
     "run_samples": "_viewing:samples",
     "draft": "_designing:draft",
     "design": "_designing:designed",
+    "cloud": "_cloud:cloud",
+    "segments": "_segments:segments",
     "fitted": "_designing:fitted",
     "campaign": "_campaigning:given",
     "campaign_so_far": "_campaigning:so_far",

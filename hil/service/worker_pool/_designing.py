@@ -22,8 +22,8 @@ from hil.service.worker_pool.drawn_numbers import number, numbers
 _KEPT = 4  # models that stay prepared
 _SHOWN_HZ = (0.1, 100.0)
 _EACH = 3  # of the frequencies that are drawn
-_SPEEDS_KM_H = (0.0, 20.0)
-_STEP_NM = 326.0  # of the paper's and the acceptance plan's steps
+SPEEDS_KM_H = (0.0, 20.0)
+STEP_NM = 326.0  # of the paper's and the acceptance plan's steps
 _BEFORE, _AFTER = 100, 1400  # milliseconds
 _EVERY = 4  # of which is drawn: the response is slower by far
 
@@ -34,8 +34,8 @@ def draft(model: str, **chosen: Any) -> dict[str, Any]:
     Raises:
         BadInputError: the model cannot be designed for, or a value is out of range.
     """
-    drafts = _drafts(model)
-    found = drafts.draft(_spec(chosen))
+    drafts = drafts_of(model)
+    found = drafts.draft(spec_of(chosen))
     shown = (drafts.frequency_hz >= _SHOWN_HZ[0]) & (drafts.frequency_hz <= _SHOWN_HZ[1])
     loops = {"pi": found.pi_loop[shown][::_EACH], "chosen": found.loop[shown][::_EACH]}
     steps, why_not = _steps(drafts, found)
@@ -51,10 +51,10 @@ def draft(model: str, **chosen: Any) -> dict[str, Any]:
             }
             for name, loop in loops.items()
         ],
-        "margins": _margins(found.margins),
+        "margins": margin_fields(found.margins),
         "unstable": found.unstable,
         "resonance_hz": drafts.plant.resonance_hz,
-        "step_nm": _STEP_NM,
+        "step_nm": STEP_NM,
         "time_s": time_s.tolist(),
         "steps": steps,
         "steps_why_not": why_not,
@@ -68,10 +68,10 @@ def designed(model: str, **chosen: Any) -> dict[str, Any]:
     Raises:
         BadInputError: as of `hil design`; an unstable loop gives no controller.
     """
-    found = design(load_model(Path(model)), _spec(chosen))
+    found = design(load_model(Path(model)), spec_of(chosen))
     return {
         "controller": controller_to_toml(found.controller),
-        "margins": _margins(found.loop(found.chosen).margins),
+        "margins": margin_fields(found.loop(found.chosen).margins),
         "stable_share": found.robustness.stable_share,
         "worst_sensitivity_peak": number(found.robustness.sensitivity_peak),
         "source": found.robustness.source,
@@ -81,32 +81,38 @@ def designed(model: str, **chosen: Any) -> dict[str, Any]:
 
 
 @functools.lru_cache(_KEPT)
-def _drafts(model: str) -> Drafts:
+def drafts_of(model: str) -> Drafts:
+    """A model file, prepared for drafts.
+
+    Raises:
+        BadInputError: the model cannot be designed for.
+    """
     return Drafts(load_model(Path(model)))
 
 
-def _spec(chosen: dict[str, Any]) -> DesignSpec:
+def spec_of(chosen: dict[str, Any]) -> DesignSpec:
+    """Fields of `DraftWanted` as a design has them."""
     notch_hz, name = chosen.pop("notch_hz", None), chosen.pop("name", None)
     return DesignSpec(**chosen, notch_hz=notch_hz, name=name or "")
 
 
 def _steps(drafts: Drafts, found: Draft) -> tuple[list[dict[str, Any]], str]:
     try:
-        return [_step(drafts, found.controller, speed) for speed in _SPEEDS_KM_H], ""
+        return [_step(drafts, found.controller, speed) for speed in SPEEDS_KM_H], ""
     except HilError as error:  # the loops can be looked at all the same
         return [], error.what
 
 
 def _step(drafts: Drafts, controller: Controller, speed_km_h: float) -> dict[str, Any]:
     axle = Axle(drafts.chain, controller, drafts.chain.wheel_radius_m, speed_km_h / 3.6)
-    given = axle.play(np.r_[np.zeros(_BEFORE), np.full(_AFTER, _STEP_NM)])
+    given = axle.play(np.r_[np.zeros(_BEFORE), np.full(_AFTER, STEP_NM)])
     torque: npt.NDArray[np.float64] = given["shaft_torque_nm"]
     peak = float(np.max(torque))
     return {
         "speed_km_h": speed_km_h,
         "shaft_torque_nm": numbers(torque[::_EVERY]),
         "peak_shaft_torque_nm": number(peak),
-        "overshoot_shaft_torque_nm": number(max(0.0, peak - _STEP_NM)),
+        "overshoot_shaft_torque_nm": number(max(0.0, peak - STEP_NM)),
     }
 
 
@@ -116,7 +122,8 @@ def _fitted_note(drafts: Drafts) -> list[str]:
     return ["steps are those of the three-inertia chain that is nearest to the model's functions"]
 
 
-def _margins(found: Margins) -> dict[str, Any]:
+def margin_fields(found: Margins) -> dict[str, Any]:
+    """Fields of `MarginData`."""
     names = (
         "gain_margin_db", "gain_margin_hz", "phase_margin_deg", "phase_margin_hz", "delay_margin_s",
         "sensitivity_peak", "sensitivity_peak_hz", "comfort_peak",
