@@ -28,7 +28,7 @@ TASKS = {
     "design": "_designing:designed",
     "cloud": "_cloud:cloud",
     "segments": "_segments:segments",
-    "fitted": "_designing:fitted",
+    "fitted": "_fitted:fitted",
     "campaign": "_campaigning:given",
     "campaign_so_far": "_campaigning:so_far",
     "campaign_findings": "_campaign_findings:findings",

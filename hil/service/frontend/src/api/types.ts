@@ -47,3 +47,5 @@ export type RunNotes = Schemas["RunNotes"];
 export type Note = Schemas["NoteData"];
 export type PlanCheck = Schemas["PlanCheck"];
 export type PlanMistake = Schemas["PlanMistake"];
+export type CloudData = Schemas["CloudData"];
+export type SegmentsData = Schemas["SegmentsData"];
