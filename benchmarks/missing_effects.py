@@ -133,7 +133,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--every", type=int, default=20, help="of the blind set's cases")
     parser.add_argument("--seed", type=int, default=11, help="of the blind set")
     parser.add_argument("--new", action="store_true", help="only the one that is to follow")
-    options = parser.parse_args(arguments)
+    options = parser.parse_intermixed_args(arguments)
     ways = {"old": _old, "new": _new}
     if options.new:
         del ways["old"]

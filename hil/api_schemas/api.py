@@ -60,12 +60,15 @@ class Health(_Data):
         0, description="runs with files that are not in the store; 0 without a store"
     )
     results_not_stored: int = Field(
-        0, description="finished studies and campaigns with files that are not in the store"
+        0, description="finished studies, campaigns and given recordings with files that are not in the store"
     )
     store_problem: str = Field("", description="why files do not reach the store; '' if they do")
     stop_url: str = Field(
         "",
         description="address of the stop post, which is independent of the service; '' if not available",
+    )
+    sign_in: str = Field(
+        "", description="name of the provider where people sign in by OpenID Connect; '' for tokens only"
     )
     audit_problem: str = Field("", description="fault of the audit log; '' if it is unchanged")
     kept_apart: int = Field(0, description="files of an earlier version's folder that are not shared")
@@ -96,6 +99,18 @@ class RunWanted(_Data):
         pattern=r"^[A-Za-z0-9_.:-]*$",
         description="a repeated request with the same key queues no second run",
     )
+
+
+class ReservationData(_Data):
+    """A bench that somebody has for themselves from a moment to another."""
+
+    id: RunId
+    bench: str
+    who: str
+    begins: datetime.datetime
+    ends: datetime.datetime
+    reason: str
+    admitted: list[RunId] = Field([], description="runs of others that may start meanwhile")
 
 
 class PromptData(_Data):
@@ -132,6 +147,15 @@ class RunData(_Data):
     reason: str = Field("", description="reason of its end, or of waiting")
     dut: str = Field("", description="serial number or name of the tested device, when it is finished")
     files: list[str] = Field([], description="names of its files, when it is finished")
+    expected_start: datetime.datetime | None = Field(
+        None, description="when it is expected to start, while it is queued; null: not known"
+    )
+    expected_end: datetime.datetime | None = Field(
+        None, description="when it is expected to end, while it is queued or running; null: not known"
+    )
+    waits_for: ReservationData | None = Field(
+        None, description="reservation of another person that it waits for, while it is queued"
+    )
 
 
 class RunChange(_Data):
@@ -158,7 +182,8 @@ class BenchData(_Data):
     waiting: int = Field(description="runs in its queue")
     limits: dict[str, float] = Field(description="largest magnitude by channel, in the channel's unit")
     units: dict[str, str] = Field(description="unit by channel, of all that is recorded")
-    lease: str = Field("", description="user who has reserved it")
+    lease: str = Field("", description="user who has it for a while from now on")
+    reserved_by: str = Field("", description="user whose reservation is under way")
     machine: str = Field("", description="machine of its agent; '' for a bench of the service")
     stop_confirmed: bool = Field(True, description="false while an agent has not confirmed an emergency stop")
     away_since: datetime.datetime | None = Field(None, description="time of the last report of its agent")

@@ -1,11 +1,11 @@
-"""Identifications and diagnoses of runs, as they pass over the API."""
+"""Identifications and diagnoses of runs and given recordings, as they pass over the API."""
 
 from __future__ import annotations
 
 import datetime
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from hil.api_schemas.api import Record, RunId
 from hil.api_schemas.design import FileName, Numbers
@@ -13,25 +13,35 @@ from hil.api_schemas.design import FileName, Numbers
 StudyKind = Literal["identification", "diagnosis"]
 StudyState = Literal["waiting", "running", "ended", "failed", "cancelled", "interrupted"]
 STUDY_OVER: tuple[StudyState, ...] = ("ended", "failed", "cancelled", "interrupted")
-Runs = Annotated[list[RunId], Field(min_length=1, max_length=20)]
+#: Of runs, or of recordings that were given.
+Chosen = Annotated[list[RunId], Field(max_length=20)]
 
 
 class _Data(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
 
-class IdentificationWanted(_Data):
-    """Identification of a model from runs with chirps or multisines."""
+class _OfRecordings(_Data):
+    runs: Chosen = []
+    recordings: Chosen = Field([], description="numbers of given recordings")
 
-    runs: Runs
+    @model_validator(mode="after")
+    def _something(self) -> Self:
+        if not self.runs and not self.recordings:
+            raise ValueError("choose at least one run or recording")
+        return self
 
 
-class DiagnosisWanted(_Data):
-    """Diagnosis of the difference between runs and a model."""
+class IdentificationWanted(_OfRecordings):
+    """Identification of a model from runs or given recordings with chirps or multisines."""
+
+
+class DiagnosisWanted(_OfRecordings):
+    """Diagnosis of the difference between a model and runs or given recordings."""
 
     model: FileName
-    runs: Runs
-    holdout: list[RunId] = Field([], max_length=20, description="runs for validation, not used in the fit")
+    holdout: Chosen = Field([], description="runs for validation, not used in the fit")
+    holdout_recordings: Chosen = Field([], description="given recordings for validation")
     at_most_min: float = Field(10.0, gt=0, le=60, allow_inf_nan=False)
 
 
@@ -41,6 +51,7 @@ class StudyData(Record):
     kind: StudyKind
     state: StudyState
     runs: list[int]
+    recordings: list[int] = Field([], description="given recordings")
     model: str = Field("", description="model of a diagnosis")
     requested_by: str
     asked_at: datetime.datetime

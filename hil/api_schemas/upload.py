@@ -6,7 +6,9 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-GivenKind = Literal["model", "controller", "plan", "picture"]
+#: Of which every text that was given is kept.
+VersionedKind = Literal["model", "controller", "plan", "bench"]
+GivenKind = Literal[VersionedKind, "picture"]
 
 
 class KeptApart(BaseModel):

@@ -2,7 +2,18 @@
 
 from hil.api_schemas.api import RunData, RunWanted
 from hil.api_schemas.campaign import CampaignWanted
+from hil.api_schemas.recording import RecordingData
+from hil.api_schemas.study import DiagnosisWanted, IdentificationWanted
 from hil.client._client import Client
 from hil.client._requests import RefusedError
 
-__all__ = ["CampaignWanted", "Client", "RefusedError", "RunData", "RunWanted"]
+__all__ = [
+    "CampaignWanted",
+    "Client",
+    "DiagnosisWanted",
+    "IdentificationWanted",
+    "RecordingData",
+    "RefusedError",
+    "RunData",
+    "RunWanted",
+]

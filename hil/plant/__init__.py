@@ -1,9 +1,10 @@
 """The plant: a model file turned into motion by a compiled kernel."""
 
+from hil.plant._angles import turned
 from hil.plant._batch_simulation import ideal_sensors, simulate_many
 from hil.plant._linear import LinearSystem, linear_system, linear_system_of, system
 from hil.plant._motor_limits import refuse_motor_limits
-from hil.plant._replay import Start, gear_ratio_of, load_of, replay, simulate, start_of
+from hil.plant._replay import Start, gear_ratio_of, load_of, replay, replayed, simulate
 from hil.plant._stability import LONGEST_STEP_S, is_stable, refuse_diverged_state, refuse_too_stiff
 from hil.plant.sensors import DELAY as SENSOR_DELAY
 from hil.plant.sensors import GAIN as SENSOR_GAIN
@@ -33,10 +34,11 @@ __all__ = [
     "refuse_motor_limits",
     "refuse_too_stiff",
     "replay",
+    "replayed",
     "sensor_of",
     "sensor_response",
     "simulate",
     "simulate_many",
-    "start_of",
     "system",
+    "turned",
 ]

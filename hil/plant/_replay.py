@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +12,9 @@ from hil.core.effects import EFFECTS, Stage
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
-from hil.plant import kernel, slots
+from hil.plant import _starts, kernel, slots
+from hil.plant._angles import turned
+from hil.plant._batch_simulation import simulate_many
 from hil.plant._functions import respond_many
 from hil.plant._stability import LONGEST_STEP_S, refuse_divergence, refuse_too_stiff
 from hil.plant.sensors import measured, sensor_of
@@ -22,8 +23,8 @@ from hil.plant.sides import LUMPED, form_of
 Array = npt.NDArray[np.float64]
 
 _UNEVEN_SHARE = 0.01
-_START_SAMPLES = (20, 10, 5)
 _RESTING_SHARE = 0.05
+_LATE = {"dead_time": ("extra_delay_s",), "actuator_lag": ("time_constant_s",)}
 _SLOW_HZ = 1e-3
 
 
@@ -107,8 +108,10 @@ def _sides(out: Array) -> dict[str, Array]:
 def replay(model: Model, recording: Recording) -> Recording:
     """`model` driven by a recording's torque request from its initial speeds, at its time stamps.
 
-    Where the model has a `load_input`, that channel brakes its wheels. Uneven time stamps are resampled
-    (input held, load and outputs interpolated); `notes` says so.
+    It begins at what the first samples show, within their noise where the next seconds suit best. Ripples
+    follow the angle that recorded speeds turn through. Where the model has a `load_input`, that channel
+    brakes its wheels. Uneven time stamps are resampled (input held, load and outputs interpolated); `notes`
+    says so.
 
     Raises:
         BadInputError: the simulation diverges, or would; or the model's load was not recorded.
@@ -128,15 +131,57 @@ def replay(model: Model, recording: Recording) -> Recording:
         notes.append(f"time stamps are uneven: simulated every {dt * 1e3:g} ms, interpolated back")
     else:
         dt = float((time[-1] - time[0]) / (len(time) - 1))
-    start = start_of(recording, gear_ratio_of(model))
-    if _rests(model, start, float(torque[0])):
-        start = dataclasses.replace(start, motor_torque_nm=0.0)
-    channels = simulate(model, torque, dt, start, load_nm=load)
+    recorded = _on_grid(recording, grid)
+    angle = float(recording[WHEEL_ANGLE][0]) if WHEEL_ANGLE in recording else 0.0
+    channels = replayed(model, torque, dt, recorded, load, angle)
     refuse_divergence(channels, grid, model)
     if not even:
         channels = {name: np.interp(time, grid, values) for name, values in channels.items()}
     inputs = {name: recording[name] for name in (INPUT, model.load_input) if name}
     return Recording({TIME: time, **inputs, **channels}, recording.source, notes=notes)
+
+
+def _along(
+    model: Model, torque: Array, dt: float, start: Start, recorded: Array, load: Array | None
+) -> dict[str, Array]:
+    """Outputs of a model whose ripples follow recorded angles; none where no speed was recorded."""
+    ratio = gear_ratio_of(model)
+    if not np.isfinite(recorded[0, :2]).any() or ratio is None or form_of(model)[len(LUMPED) :]:
+        return {}
+    begin = np.array([[start.motor_speed_rad_s, start.wheel_speed_rad_s, start.shaft_torque_nm]])
+    sensors = np.stack([sensor_of(model, name) for name in OUTPUTS])[None]
+    angles = turned(recorded, dt, ratio, start.wheel_angle_rad)
+    rests = start.motor_torque_nm is not None  # a sample before the first shows that no torque has acted
+    if rests:
+        torque = np.concatenate([[start.motor_torque_nm], torque])
+        angles = np.concatenate([angles[:1], angles])
+        load = None if load is None else np.concatenate([load[:1], load])
+    shown = simulate_many(slots.pack(model)[None], torque, dt, begin, sensors, angles=angles, load_nm=load)
+    shown = shown[:, int(rests) :]
+    return {name: np.ascontiguousarray(shown[0, :, column]) for column, name in enumerate(OUTPUTS)}
+
+
+def replayed(
+    model: Model,
+    torque_nm: Array,
+    dt: float,
+    recorded: Array,
+    load_nm: Array | None = None,
+    wheel_angle_rad: float = 0.0,
+) -> dict[str, Array]:
+    """What `replay` simulates, of arrays: channels of shape (n,).
+
+    Args:
+        torque_nm: shape (n,), held for `dt` seconds each.
+        recorded: n x 3, in the order of `OUTPUTS`; NaN where a channel was not recorded.
+        load_nm: shape (n,), brakes the wheels.
+        wheel_angle_rad: at the first sample.
+    """
+    start = settled_start(model, torque_nm, dt, recorded, load_nm, wheel_angle_rad)
+    channels = simulate(model, torque_nm, dt, start, load_nm=load_nm)
+    if any(EFFECTS[use.id].law.follows is not None for use in model.effects):
+        channels |= _along(model, torque_nm, dt, start, recorded, load_nm)
+    return channels
 
 
 def load_of(model: Model, recording: Recording) -> Array | None:
@@ -156,34 +201,73 @@ def load_of(model: Model, recording: Recording) -> Array | None:
     return recording[model.load_input]
 
 
-def _rests(model: Model, start: Start, torque_nm: float) -> bool:
-    """Whether the shafts carry next to nothing of the first torque: then none has acted before it."""
+def _rests(model: Model, shaft_torque_nm: float, torque_nm: float) -> bool:
+    """Whether the shafts hold next to nothing of the first torque: then none has acted before it."""
     gear_ratio = model.parameters.get("gear_ratio", 1.0)
-    return abs(start.shaft_torque_nm) < _RESTING_SHARE * gear_ratio * abs(torque_nm)
+    return abs(shaft_torque_nm) < _RESTING_SHARE * gear_ratio * abs(torque_nm)
 
 
-def start_of(recording: Recording, gear_ratio: float | None = None) -> Start:
-    """Initial condition: the mean of the first samples, as many as show no motion beyond their noise.
+def _on_grid(recording: Recording, grid: Array) -> Array:
+    """The outputs at the times of a grid, n x 3; NaN where a channel was not recorded."""
+    columns = [
+        np.interp(grid, recording.time_s, recording[name])
+        if name in recording
+        else np.full(len(grid), np.nan)
+        for name in OUTPUTS
+    ]
+    return np.column_stack(columns)
 
-    A speed that was not recorded follows from the other by the gear ratio; without one it is zero.
+
+def settled_start(
+    model: Model,
+    torque_nm: Array,
+    dt: float,
+    measured: Array,
+    load_nm: Array | None = None,
+    wheel_angle_rad: float = 0.0,
+) -> Start:
+    """Where a replay begins: at what first samples show, within their noise where the next seconds suit best.
+
+    Args:
+        torque_nm: shape (n,), held for `dt` seconds each.
+        measured: n x 3, in the order of `OUTPUTS`; NaN where a channel was not recorded.
+        load_nm: shape (n,), brakes the wheels.
     """
+    count = min(len(torque_nm), round(_starts.SECONDS / dt))
+    torque, measured = torque_nm[:count], measured[:count]
+    read, errors = (np.array(one) for one in zip(*map(_starts.beginning, measured.T), strict=True))
+    ratio = gear_ratio_of(model)
+    if ratio:
+        followed = np.array([ratio, 1.0 / ratio, np.nan])
+        read = np.where(np.isfinite(read), read, followed * read[[1, 0, 2]])
+        errors = np.where(np.isfinite(errors), errors, followed * errors[[1, 0, 2]])
+    read, errors = np.nan_to_num(read), np.nan_to_num(errors)
+    rests = _rests(model, float(read[2]), float(torque[0]))
 
-    def first(name: str) -> float | None:
-        return _beginning(recording[name]) if name in recording else None
+    def begun(at: Array) -> Start:
+        motor, wheel, shaft = at.tolist()
+        return Start(motor, wheel, shaft, 0.0 if rests else None, wheel_angle_rad)
 
-    motor, wheel = first("motor_speed_rad_s"), first("wheel_speed_rad_s")
-    if gear_ratio:
-        if motor is None and wheel is not None:
-            motor = wheel * gear_ratio
-        if wheel is None and motor is not None:
-            wheel = motor / gear_ratio
-    angle = float(recording[WHEEL_ANGLE][0]) if WHEEL_ANGLE in recording else 0.0
-    return Start(
-        motor or 0.0,
-        wheel or 0.0,
-        first("shaft_torque_nm") or 0.0,
-        wheel_angle_rad=angle,
-    )
+    def show(at: Array) -> Array:
+        load = None if load_nm is None else load_nm[:count]
+        channels = simulate(model, torque, dt, begun(at), load_nm=load)
+        return np.column_stack([channels.get(name, np.full(count, np.nan)) for name in OUTPUTS])
+
+    return begun(_starts.settled(read, errors, _unrecorded(model, torque, dt), measured, show))
+
+
+def _unrecorded(model: Model, torque_nm: Array, dt: float) -> Array:
+    """Change of a start, (3,), by what was asked for before the first sample and acts after it.
+
+    It was no larger than what is asked for in the same time after it.
+    """
+    if model.kind == "transfer_function":
+        return np.zeros(len(OUTPUTS))
+    delay_s = model.parameters.get("torque_delay", 0.0)
+    for use in model.effects:
+        delay_s += sum(float(use.values[name]) for name in _LATE.get(use.id, ()))
+    largest = float(np.max(np.abs(torque_nm[: 1 + round(delay_s / dt)])))
+    return np.array([largest * delay_s / model.parameters["motor_inertia"], 0.0, 0.0])
 
 
 def gear_ratio_of(model: Model) -> float | None:
@@ -195,16 +279,6 @@ def gear_ratio_of(model: Model) -> float | None:
         return None
     motor, wheel = (abs(complex(f.response(np.array(_SLOW_HZ)))) for f in both if f is not None)
     return motor / wheel if wheel > 0.0 else None
-
-
-def _beginning(values: Array) -> float:
-    for count in _START_SAMPLES:
-        head = values[:count]
-        # White noise scatters as much from sample to sample as around its mean; motion does not.
-        noise = np.median(np.abs(np.diff(head))) / (0.6745 * np.sqrt(2.0))
-        if np.std(head) <= 1.5 * noise:
-            return float(np.mean(head))
-    return float(values[0])
 
 
 def _functions(

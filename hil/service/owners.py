@@ -6,11 +6,11 @@ import asyncio
 import contextlib
 import hashlib
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 from hil.execution.background import apart
 from hil.service.stop_post import Owner, StopPost
-from hil.service.store import DatabaseAwayError, TokenStore
+from hil.service.store import DatabaseAwayError, PersonStore, TokenStore
 
 _LOOK_S = 2.0  # another process may make and revoke tokens, too
 
@@ -18,12 +18,12 @@ _LOOK_S = 2.0  # another process may make and revoke tokens, too
 class OwnersKnown:
     """What the database had last of tokens and sessions; its stop post knows the same."""
 
-    def __init__(self, tokens: TokenStore, stop_post: StopPost | None) -> None:
-        self._tokens, self._stop_post = tokens, stop_post
+    def __init__(self, stores: Iterable[TokenStore | PersonStore], stop_post: StopPost | None) -> None:
+        self._stores, self._stop_post = tuple(stores), stop_post
         self._known: Mapping[str, Owner] = {}
         self._changed = asyncio.Event()
         with contextlib.suppress(DatabaseAwayError):
-            self._take(tokens.owners())
+            self._take(self._asked())
 
     def of(self, secret: str) -> Owner | None:
         """Whose a secret is; None if it is no one's, or its time is over."""
@@ -42,7 +42,10 @@ class OwnersKnown:
                 await asyncio.wait_for(self._changed.wait(), _LOOK_S)
             self._changed.clear()
             with contextlib.suppress(DatabaseAwayError):
-                self._take(await apart(self._tokens.owners))
+                self._take(await apart(self._asked))
+
+    def _asked(self) -> dict[str, Owner]:
+        return {secret: owner for store in self._stores for secret, owner in store.owners().items()}
 
     def _take(self, owners: Mapping[str, Owner]) -> None:
         self._known = owners

@@ -23,7 +23,8 @@ from hil.execution.data_folder import folder_of
 from hil.execution.run_execution import RunEnd, RunExecution, RunningRun, end_of_left
 from hil.execution.run_process import alive_in
 from hil.service.stop_post import StopPost
-from hil.service.store import BenchStore, DatabaseAwayError, LeaseStore, RunStore, in_turns
+from hil.service.store import BenchStore, DatabaseAwayError, RunStore, in_turns
+from hil.service.turns import Turns
 
 _LOOK_S = 0.5  # how often a bench is looked at that cannot be driven now
 _USED_S = 1.0  # how old that look may be for those who ask over the API
@@ -44,6 +45,7 @@ class _Place:
     looked_s: float = -1e9
     held_by: str = ""  # another service of the same database
     held_s: float = -1e9
+    dropped: bool = False  # taken out of service
     unsure: int | None = None  # taken while the database went away: perhaps so, and certainly not started
 
 
@@ -51,6 +53,7 @@ class Queue:
     """Runs the runs.
 
     Args:
+        turns: whose turn it is on a bench.
         folder: where each run has a folder of its own, by its number.
         source: where a plan lies here by its name, with what it loads beside it.
         changed: called whenever something is to be shown anew, with the bench's name.
@@ -61,7 +64,7 @@ class Queue:
         self,
         benches: dict[str, Bench],
         runs: RunStore,
-        leases: LeaseStore,
+        turns: Turns,
         held: BenchStore,
         folder: Path,
         source: Callable[[str], Path],
@@ -70,7 +73,7 @@ class Queue:
     ) -> None:
         self._stop_post = stop_post
         self._places = {name: _Place(bench) for name, bench in benches.items()}
-        self._runs, self._leases, self._held = runs, leases, held
+        self._runs, self._turns, self._held = runs, turns, held
         self._folder = folder
         self._source, self._changed = source, changed
         self._wake = asyncio.Event()
@@ -88,6 +91,27 @@ class Queue:
     def folder_of(self, run: int) -> Path:
         """Where the files of a run are."""
         return folder_of(self._folder, run)
+
+    def add(self, bench: Bench) -> None:
+        """Drive one more bench.
+
+        Raises:
+            BenchError: another service drives it.
+        """
+        place = _Place(bench)
+        self._refuse_held(place)
+        self._places[bench.name] = place
+
+    def drop(self, bench: str) -> bool:
+        """Begin nothing more on a bench; false while a run is under way there.
+
+        It is still known: who looks at all benches may just be looking at it.
+        """
+        place = self._places[bench]
+        if place.running is not None or place.left or place.unsure is not None:
+            return False
+        place.dropped = True
+        return True
 
     def wake(self) -> None:
         """Look at all benches now."""
@@ -121,7 +145,7 @@ class Queue:
         """Begin runs as benches become free, until `close`."""
         while not self._closing:
             with contextlib.suppress(DatabaseAwayError):  # nothing is started until it answers
-                for place in self._places.values():
+                for place in [one for one in self._places.values() if not one.dropped]:
                     await self._look(place)
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._wake.wait(), _LOOK_S)
@@ -167,8 +191,7 @@ class Queue:
                 self._changed(left.bench)
         if place.running is not None or place.left or place.held_by or place.bench.stopped():
             return
-        lease = self._leases.of(place.bench.name)
-        run = self._runs.next_of(place.bench.name, lease.holder if lease else None)
+        run = self._turns.next_of(place.bench.name)
         if run is None or self._used_by(place, fresh=True):
             return
         place.unsure = run.id

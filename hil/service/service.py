@@ -14,8 +14,9 @@ from pathlib import Path
 
 from sqlalchemy import Engine
 
-from hil.api_schemas.api import OVER, BenchData, BenchState, ForecastData, Me, RunData
+from hil.api_schemas.api import OVER, BenchData, BenchState, ForecastData, Me, RunData, RunState
 from hil.api_schemas.campaign import CampaignData
+from hil.api_schemas.recording import RecordingData
 from hil.api_schemas.study import StudyData
 from hil.execution.background import apart
 from hil.execution.benches import Bench
@@ -28,35 +29,46 @@ from hil.service.agents.remote_bench import RemoteBench
 from hil.service.agents.run_upload import RunUploads
 from hil.service.archive import Archive, Keeper, Rounds
 from hil.service.audit import DeferredAudit, problem_of
-from hil.service.files.catalogues import controller_catalogue, model_catalogue
+from hil.service.durations import Durations
+from hil.service.files.catalogues import bench_catalogue, controller_catalogue, model_catalogue
 from hil.service.files.legacy_import import LegacyImport
 from hil.service.files.pictures import Pictures
 from hil.service.files.plans import Plans
+from hil.service.files.served_benches import ServedBenches
 from hil.service.files.upload_reader import UploadReader
-from hil.service.files.uploads import Uploads
+from hil.service.files.uploads import NameTakenError, Uploads
 from hil.service.jobs.campaigns import Campaigns, Places, Simulating
 from hil.service.jobs.shared_results import SharedResults
 from hil.service.jobs.studies import Studies
 from hil.service.live.live_hub import LiveHub
 from hil.service.owners import OwnersKnown
 from hil.service.queue import Queue
+from hil.service.queue_forecast import QueueForecast
+from hil.service.recordings import GivenRecordings, Room
+from hil.service.sign_in import SignIn
 from hil.service.stop_post import StopPost
 from hil.service.stops import Stops
 from hil.service.store import (
     BenchStore,
     DatabaseAwayError,
+    DurationStore,
     FileStore,
     GivenStore,
+    HandoverStore,
     LayoutStore,
     LeaseStore,
     LogStore,
     NoteStore,
+    PersonStore,
     Presence,
+    ReservationStore,
     ResultStore,
     RunList,
     RunStore,
     TokenStore,
+    VersionStore,
 )
+from hil.service.turns import Turns
 from hil.service.worker_pool import WorkerPool
 from test_plans import Plan
 
@@ -64,17 +76,19 @@ _VIEW_S = 600.0
 _ASK_S = 1.0  # a database that is away
 _MOST_SHOWN = 100
 _LAST = 2**31 - 1
+_OPEN: tuple[RunState, ...] = ("queued", "waiting_approval", "running")
 
 logger = logging.getLogger(__name__)
 
 
 @dataclass
 class Waiting:
-    """What the store has of a bench: runs that wait, in their order, how many they are, and a lease."""
+    """What the store has of a bench: runs that wait, in their order, how many they are, and whose it is."""
 
     runs: list[RunData] = field(default_factory=list)
     count: int = 0
     lease: str = ""
+    reserved_by: str = ""
 
 
 class Service:
@@ -86,6 +100,8 @@ class Service:
         archive: where files are kept for good; None keeps them in the folder.
         local_days: how long files that the archive has stay in the folder.
         stop_post: takes emergency stops whatever becomes of this.
+        sign_in: signs people in by OpenID Connect; None: there are tokens only.
+        room: for recordings that people give.
 
     Raises:
         BenchError: another service drives one of the benches, or the database is away.
@@ -101,13 +117,23 @@ class Service:
         archive: Archive | None = None,
         local_days: float = 30.0,
         stop_post: StopPost | None = None,
+        sign_in: SignIn | None = None,
+        room: Room | None = None,
     ) -> None:
+        self.served_benches = ServedBenches(folder / "benches", folder.resolve())
+        given_benches = self.served_benches.there(lambda name: _refused(name, benches, held))
+        benches = {**benches, **given_benches}
         self._own, self._folder = benches, folder
         self.database = Presence(engine)
         self.runs, self.run_list, self.leases = RunStore(engine), RunList(engine), LeaseStore(engine)
+        self.reservations, self.handovers = ReservationStore(engine), HandoverStore(engine)
+        self.durations = Durations(DurationStore(engine))
+        self.turns = Turns(self.runs, self.leases, self.reservations, self.durations)
+        self.queue_forecast = QueueForecast(self)
         self.layouts = LayoutStore(engine)
         self.notes = NoteStore(engine)
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
+        self.people, self.sign_in = PersonStore(engine), sign_in
         given = GivenStore(engine)
         models = Uploads(given, "model", folder / "given/models", ".toml")
         controllers = Uploads(given, "controller", folder / "given/plans", ".toml")
@@ -115,6 +141,8 @@ class Service:
         self.plans = Plans(
             Uploads(given, "plan", folder / "given/plans", ".yaml"), controllers, self.pictures
         )
+        self.bench_files = bench_catalogue(Uploads(given, "bench", folder / "given/benches", ".toml"))
+        self.versions = VersionStore(engine)
         self.models, self.controllers = model_catalogue(models), controller_catalogue(controllers)
         earlier = LegacyImport(folder, given, self.log, self.plans, self.controllers, self.models)
         self.kept_apart = earlier.take_in()
@@ -123,6 +151,8 @@ class Service:
         studies = SharedResults(results, "study", StudyData, archive, elsewhere / "studies")
         campaigns = SharedResults(results, "campaign", CampaignData, archive, elsewhere / "campaigns")
         self.studies = Studies(folder / "studies", studies)
+        recordings = SharedResults(results, "recording", RecordingData, archive, elsewhere / "recordings")
+        self.recordings = GivenRecordings(folder / "recordings", recordings, room)
         # One worker reads recordings, so that a design in the other does not wait.
         self.worker_pool, self.drawing = WorkerPool(niceness=10), WorkerPool(niceness=0)
         # Cars around a draft take a second: whoever moves a slider meanwhile does not wait for them.
@@ -131,7 +161,7 @@ class Service:
         self.viewing = WorkerPool(niceness=5, within_s=_VIEW_S)
         self.upload_reader = UploadReader(self.plans)
         self.campaigns = Campaigns(folder / "campaigns", simulating, self.worker_pool, campaigns)
-        self.sharing = Rounds(self._share, "files of studies and campaigns")
+        self.sharing = Rounds(self._share, "files of studies, campaigns and recordings")
         self._held = held
         self.live_hub = LiveHub(lambda: self.benches, self.running, folder / "overviews")
         runs_folder = folder / "runs"
@@ -140,13 +170,13 @@ class Service:
             files = FileStore(engine)
             self.keeper = Keeper(archive, files, held.service, runs_folder, self.live_hub.runs, local_days)
         source, changed = self.plans.source, self.live_hub.changed
-        self.queue = Queue(benches, self.runs, self.leases, held, runs_folder, source, changed, stop_post)
-        self.owners = OwnersKnown(self.tokens, stop_post)
+        self.queue = Queue(benches, self.runs, self.turns, held, runs_folder, source, changed, stop_post)
+        self.owners = OwnersKnown((self.tokens, self.people), stop_post)
         self.stops = Stops(self, stop_post)
         self.began_s = time.monotonic()
         self.closing = False
         self._waiting: defaultdict[str, Waiting] = defaultdict(Waiting)
-        self.agents = Agents(engine, held.service, self.runs, self.leases, runs_folder, source, changed)
+        self.agents = Agents(engine, held.service, self.runs, self.turns, runs_folder, source, changed)
         self.agents_forecasts = AgentsForecasts()
         self.run_uploads = RunUploads(held.service, self.runs, runs_folder)
         self.audit_problem = ""
@@ -154,7 +184,7 @@ class Service:
         self.deferred_audit = DeferredAudit(self.log)
 
     async def _share(self) -> str:
-        problems = await self.studies.share(), await self.campaigns.share()
+        problems = await self.studies.share(), await self.campaigns.share(), await self.recordings.share()
         return "; ".join(filter(None, problems))
 
     @property
@@ -166,9 +196,39 @@ class Service:
         """A bench of the service's own; None if it is an agent's."""
         return self._own.get(bench)
 
+    def serve_bench(self, name: str, text: str) -> None:
+        """Serve a simulated bench that somebody gave.
+
+        Raises:
+            BadInputError: it cannot be served, or there is a bench of its name.
+            BenchError: another service drives one of its name.
+        """
+        if name in self.benches:
+            raise NameTakenError("there is a bench of this name", where=name, fix="give it another name")
+        bench = self.served_benches.add(name, text, self.models.paths())
+        try:
+            self.queue.add(bench)
+        except BaseException:
+            self.served_benches.remove(name)
+            raise
+        self._own[name] = bench
+        self.tell_stop_post()
+        self.changed(name)
+
+    def drop_bench(self, name: str) -> bool:
+        """Serve a bench that somebody gave no longer; false while runs wait or are under way there."""
+        open_ones = self.runs.all(bench=name, states=_OPEN, before=_LAST, most=1)
+        if open_ones or not self.queue.drop(name):  # one that just begins is nowhere but in the database
+            return False
+        del self._own[name]
+        self.served_benches.remove(name)
+        self.tell_stop_post()
+        self._held.give_back(name)
+        return True
+
     def running(self, bench: str) -> RunningRun | None:
         """The run under way on a bench."""
-        return self.queue.running(bench) if bench in self._own else self.agents.benches[bench].running
+        return self.queue.running(bench) if self._is_own(bench) else self.agents.benches[bench].running
 
     def running_run(self, run: int) -> RunningRun | None:
         """A run by its number, if it is under way."""
@@ -176,7 +236,11 @@ class Service:
 
     def state(self, bench: str) -> tuple[BenchState, str]:
         """What a bench does, and why it may not be driven."""
-        return self.queue.state(bench) if bench in self._own else self.agents.benches[bench].state()
+        return self.queue.state(bench) if self._is_own(bench) else self.agents.benches[bench].state()
+
+    def _is_own(self, bench: str) -> bool:
+        """Whether it is the service's own, or was until a moment ago."""
+        return bench in self._own or bench not in self.agents.benches
 
     def wake(self, bench: str) -> None:
         """Look now what waits for a bench."""
@@ -206,6 +270,7 @@ class Service:
             limits=bench.limits,
             units=bench.units,
             lease=waiting.lease,
+            reserved_by=waiting.reserved_by,
             machine=agent.machine if agent else "",
             stop_confirmed=not (isinstance(bench, RemoteBench) and bench.stop_by),
             away_since=agent.heard_at if agent and agent.away else None,
@@ -219,7 +284,9 @@ class Service:
                 bench=bench, states=("queued", "waiting_approval"), before=_LAST, most=_MOST_SHOWN
             )
             found.sort(key=lambda run: (-run.priority, run.id))
-            self._waiting[bench] = Waiting(found, self.runs.waiting(bench), lease.holder if lease else "")
+            found = self.queue_forecast.of_queue(bench, found)
+            holder, whose = lease.holder if lease else "", self.queue_forecast.reserved_by(bench)
+            self._waiting[bench] = Waiting(found, self.runs.waiting(bench), holder, whose)
         return self._waiting[bench]
 
     def with_progress(self, run: RunData) -> RunData:
@@ -306,3 +373,8 @@ class Service:
             if not self.audit_problem:
                 await apart(partial(problem_of, self.log, self._folder))
             self._held.give_back()
+
+
+def _refused(name: str, benches: Mapping[str, Bench], held: BenchStore) -> str:
+    """Why a given bench of a name is not served here; '' if it is."""
+    return "the service has a bench of this name" if name in benches else held.hold(name)

@@ -16,7 +16,7 @@ from pathlib import Path
 import uvicorn
 from sqlalchemy import Engine
 
-from hil.api_schemas.api import ROLES, Role, TokenMade
+from hil.api_schemas.api import ROLES, Role, RunData, TokenMade
 from hil.core.errors import BadInputError, BenchError
 from hil.core.errors.wording import printable
 from hil.engine import StopRequest
@@ -27,7 +27,9 @@ from hil.service.api import Guarding, Rates, StopAddress, application, bounded
 from hil.service.archive import Archive
 from hil.service.jobs.campaigns import Simulating
 from hil.service.notices import NoticeSettings, NoticeWatch, Post
+from hil.service.recordings import Room
 from hil.service.service import Service
+from hil.service.sign_in import SignIn, SignInSettings
 from hil.service.stop_post import StopPost
 from hil.service.store import BenchStore, LogStore, TokenStore, in_turns, open_database
 
@@ -62,9 +64,11 @@ class ServeRequest:
         stop_port: of the stop post; None takes the one after `port`, or a free one if that is 0.
         stop_url: where others reach the stop post, if that is not this host at `stop_port`.
         trusted_proxies: addresses of proxies before the service, which say for whom and how they ask.
+        room: for recordings that people give.
         rate: requests that an address may send a second, in the long run.
         for_s: ends by itself after this many seconds.
         notices: who gets which; None: they are not sent.
+        sign_in: where people sign in by OpenID Connect; None: there are tokens only.
         ready: called with the URL once it answers.
     """
 
@@ -80,9 +84,11 @@ class ServeRequest:
     store: str = ""
     local_days: float = 30.0
     hosts: Sequence[str] = ()
+    room: Room = field(default_factory=Room)
     rate: float = 40.0
     for_s: float = math.inf
     notices: NoticeSettings | None = None
+    sign_in: SignInSettings | None = None
     ready: Callable[[str], None] = lambda url: None
     stop: StopRequest = field(default_factory=StopRequest)
 
@@ -99,7 +105,9 @@ def serve(request: ServeRequest) -> None:
     with alone_in(request.folder, who="service", fix=_OTHER_FOLDER):
         engine = _database(request.folder, request.database, _LOCKED_S)
         try:
-            _refuse_open_to_all(request.host, TokenStore(engine))
+            sign_in = SignIn(request.sign_in) if request.sign_in is not None else None
+            if sign_in is None:
+                _refuse_open_to_all(request.host, TokenStore(engine))
             with (
                 _listening(request.host, request.port, "--port") as listening,
                 _listening(request.host, _stop_port(request), "--stop-port") as stop_listening,
@@ -115,6 +123,8 @@ def serve(request: ServeRequest) -> None:
                     archive,
                     request.local_days,
                     post,
+                    sign_in,
+                    request.room,
                 )
                 asyncio.run(_served(request, service, listening, post))
         finally:
@@ -165,10 +175,12 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         asyncio.create_task(going_on(lambda: in_turns(service.watch_database()))),
         asyncio.create_task(going_on(lambda: in_turns(service.owners.follow(lambda: service.closing)))),
     ]
+    besides.append(asyncio.create_task(going_on(lambda: in_turns(_durations_of(service)))))
     if request.notices is not None:
         watch = NoticeWatch(service, Post(request.folder, request.notices))
         besides.append(asyncio.create_task(going_on(lambda: in_turns(watch.work()))))
     service.campaigns.go_on()
+    service.recordings.go_on()
     besides.append(asyncio.create_task(going_on(lambda: in_turns(service.sharing.work()))))
     if (keeper := service.keeper) is not None:
         besides.append(asyncio.create_task(going_on(lambda: in_turns(keeper.work()))))
@@ -191,6 +203,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         server.should_exit = True
         await service.studies.close()
         await service.campaigns.close()
+        await service.recordings.close()
         service.worker_pool.close()
         service.drawing.close()
         service.clouds.close()
@@ -206,6 +219,16 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         if not task.cancelled():
             task.result()  # a mistake of ours in one of them is reported
     await in_turns(service.leave())
+
+
+async def _durations_of(service: Service) -> None:
+    found = service.queue_forecast
+
+    def present() -> list[RunData]:
+        found.show_reservations()
+        return found.present_runs()
+
+    await service.durations.work(present, found.predicted_s, service.changed, lambda: service.closing)
 
 
 def _config(request: ServeRequest, service: Service, post: StopPost) -> uvicorn.Config:
@@ -268,7 +291,8 @@ def _refuse_open_to_all(host: str, tokens: TokenStore) -> None:
         raise BadInputError(
             "there is no token yet, so anyone who reaches this address could drive the benches",
             where=f"--host {printable(host)}",
-            fix="make one first: hil serve --data DIR --add-token NAME=admin; or leave --host out",
+            fix="make one first: hil serve --data DIR --add-token NAME=admin; or give --sign-in FILE; "
+            "or leave --host out",
         )
 
 

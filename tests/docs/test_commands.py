@@ -121,6 +121,7 @@ def stage(files: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder = tmp_path / "stage"
     shutil.copytree(files, folder)
     monkeypatch.chdir(folder)
+    monkeypatch.setenv("BENCH_SIGN_IN_SECRET", "of a client")
     return folder
 
 
@@ -146,6 +147,8 @@ def prepare(page: str, stage: Path) -> None:
         for dbc in ("vehicle.dbc", "chassis.dbc", "engine.dbc"):
             shutil.copy("rmcu.dbc", dbc)
         Path("segments.json").write_text(SEGMENTS)
+    if page.endswith("sign-in.md"):
+        Path("sign-in.toml").write_text(blocks_of(page, "toml")[0])
     if page.endswith("first-run.md"):
         hil("run", "acceptance", "--out", "out/acceptance")
     if page.endswith("model-to-fmu.md"):

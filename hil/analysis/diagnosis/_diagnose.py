@@ -31,10 +31,11 @@ from hil.analysis.diagnosis.search.search import Found, begin_search, search, so
 from hil.analysis.diagnosis.search.wandering import with_wandering
 from hil.analysis.diagnosis.tell.confidence import Sure, drop_of
 from hil.analysis.diagnosis.tell.judged import Judged
-from hil.analysis.diagnosis.tell.result import INTERRUPTED, OUT_OF_TIME, Diagnosis, Verdict
+from hil.analysis.diagnosis.tell.result import INTERRUPTED, OUT_OF_TIME, Alternative, Diagnosis, Verdict
 from hil.analysis.diagnosis.tell.verdict import verdict_of
 from hil.analysis.missing_effects import explain_gap
 from hil.analysis.plausible import refuse_same_data, within_floating_point
+from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
 from hil.plant import gear_ratio_of, refuse_motor_limits
@@ -124,12 +125,26 @@ def _judged_again(
         outcome = explain_gap(model, recordings, holdout, noise=asked.noise, show=show_in_time)
         other = diagnosis_of(outcome, model, least=asked.least, considered=found.considered, notes=notes)
     except KeyboardInterrupt:
-        return replace(found, unfinished=INTERRUPTED)
+        return _unfinished(found, INTERRUPTED)
     except OutOfTimeError:
-        return replace(found, unfinished=_time_is_up(asked))
+        return _unfinished(found, _time_is_up(asked))
     if other.verdict == "named" or found.verdict == "named":
         return replace(other, seconds=found.seconds + other.seconds)
     return replace(found, seconds=found.seconds + other.seconds)
+
+
+def _unfinished(found: Diagnosis, why: str) -> Diagnosis:
+    """What the search found, its names no more than candidates: nothing has judged them yet."""
+    candidates = tuple(
+        Alternative(one.use, one.confidence, EFFECTS[one.use.id].shown_by) for one in found.effects
+    )
+    return replace(
+        found,
+        verdict="unknown",
+        effects=(),
+        alternatives=(*candidates, *found.alternatives),
+        unfinished=why,
+    )
 
 
 def _time_is_up(asked: Asked) -> str:

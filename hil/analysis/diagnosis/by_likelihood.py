@@ -101,8 +101,6 @@ def _as_it_came(found: Outcome, base: Model) -> Outcome:
         numbers={},
         base_was_far=False,
         as_likely=(),
-        fitted=tuple(replace(one, start=one.base_start) for one in found.fitted),
-        held_out=tuple(replace(one, start=one.base_start) for one in found.held_out),
     )
 
 
@@ -123,8 +121,7 @@ class _Shown:
     def of(cls, replays: tuple[Replay, ...], base: Model, model: Model, noise: Array) -> _Shown:
         """Both models on recordings; `noise` (3,) is a standard deviation of a sample."""
         traces = [_trace(one) for one in replays]
-        before = [one.outputs(base, one.base_start) for one in replays]
-        after = [one.outputs(model, one.start) for one in replays]
+        before, after = ([one.outputs(each) for one in replays] for each in (base, model))
         gaps = [channel_gaps(traces, noise, samples) for samples in (before, after)]
         maps = [gap_map(traces, noise, samples) for samples in (before, after)]
         return cls(replays, traces, before, after, gaps[0], gaps[1], maps[0], maps[1])
@@ -152,7 +149,7 @@ def _named(found: Outcome, one: Named, shown: _Shown) -> NamedEffect:
         band = (0.0, round(0.5 / shown.traces[0].dt, 1))
         place = Where((channel,), band, "at all operating conditions")
     else:
-        samples = [replay.outputs(without, replay.start) for replay in shown.replays]
+        samples = [replay.outputs(without) for replay in shown.replays]
         place = where_changed(
             shown.traces, found.noise, samples, shown.after_samples, shown.map_before, shown.map_after
         )

@@ -22,6 +22,7 @@ from hil.analysis.frequency_response._result import Distortion, FrequencyRespons
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
+_MEAN_OF_PERIOD = 50  # part of a period over which inputs are compared
 _LIKE = 0.7  # correlation of the input with itself one period later; fading in and out lowers it
 _MOST_CANDIDATES = 20
 _REPEATED = 0.05  # of the rms: largest difference of two samples a period apart
@@ -126,9 +127,14 @@ def best_linear_approximation(
 
 
 def _periodic_part(input_: Array, period: int) -> slice:
-    """The longest stretch over which the input repeats itself after `period` samples."""
+    """The longest stretch over which the input repeats itself after `period` samples.
+
+    A measured input has single samples that do not, which no mean over a fiftieth of a period shows.
+    """
+    few = max(1, period // _MEAN_OF_PERIOD)
     difference = np.abs(input_[period:] - input_[:-period])
-    bad = np.flatnonzero(difference > _REPEATED * np.std(input_))
+    around = np.sqrt(np.convolve(difference**2, np.full(few, 1.0 / few), "same"))
+    bad = np.flatnonzero(np.minimum(difference, around) > _REPEATED * np.std(input_))
     bounds = np.concatenate([[-1], bad, [len(difference)]])
     longest = int(np.argmax(np.diff(bounds)))
     return slice(int(bounds[longest]) + 1, int(bounds[longest + 1]) + period)

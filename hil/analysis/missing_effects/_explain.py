@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -62,7 +62,8 @@ def explain_gap(
             done,
             shown.left,
             lambda best: (shown.gaps(problem, best), shown.gaps(unseen, best) if holdout else {}),
-            lambda best: (shown.replays(problem, best), shown.replays(unseen, best) if holdout else ()),
+            tuple(Replay(one) for one in problem.series),
+            tuple(Replay(one) for one in unseen.series) if holdout else (),
         ),
         tuple(note for one in series for note in one.notes),
         time.perf_counter() - began,
@@ -91,13 +92,13 @@ class _Shown:
         """
         hypothesis = candidate.point.hypothesis
         both = (self.problem,) if self.unseen is self.problem else (self.problem, self.unseen)
-        return self.problem.mean_square([e for one in both for e in self.point(one, hypothesis).errors])
+        whole = replace(self.problem, series=tuple(s for one in both for s in one.series))
+        return whole.mean_square([e for one in both for e in self.point(one, hypothesis).errors])
 
     def gaps(self, problem: Problem, best: Candidate) -> dict[str, Gap]:
         """Of the base, the numbers alone and the best hypothesis."""
-        base = Hypothesis(problem.model, dict(problem.model.parameters))
-        three = (base, self.done.found[()].point.hypothesis, best.point.hypothesis)
-        errors = [np.concatenate(self.point(problem, one).errors) for one in three]
+        three = (problem.model, *(one.point.hypothesis.model() for one in (self.done.found[()], best)))
+        errors = [np.concatenate([Replay(one).errors(model) for one in problem.series]) for model in three]
         measured = np.concatenate([one.measured for one in problem.series])
         spread = np.sqrt(_mean((measured - _mean(measured)) ** 2))
         rms = [np.sqrt(_mean(one**2)) / spread for one in errors]
@@ -108,13 +109,6 @@ class _Shown:
             for i, name in enumerate(OUTPUTS)
             if np.isfinite(spread[i])
         }
-
-    def replays(self, problem: Problem, best: Candidate) -> tuple[Replay, ...]:
-        """Each recording with the starts that suit the base and the best hypothesis."""
-        base = self.point(problem, Hypothesis(problem.model, dict(problem.model.parameters)))
-        better = self.point(problem, best.point.hypothesis)
-        pairs = zip(problem.series, base.starts, better.starts, strict=True)
-        return tuple(Replay(*one) for one in pairs)
 
 
 def _mean(values: Array) -> Array:

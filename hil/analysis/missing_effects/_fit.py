@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._hypothesis import Coordinate, Hypothesis
 from hil.analysis.missing_effects._problem import Problem
-from hil.analysis.missing_effects._spectrum import Powers, powers_of
+from hil.analysis.missing_effects._spectrum import Powers
 from hil.core.model import Model
 
 Array = npt.NDArray[np.float64]
@@ -53,7 +53,7 @@ class Point:
 
     def powers(self, problem: Problem) -> Powers:
         """Of the errors."""
-        return powers_of(self.errors, problem.rate_hz, problem.signal)
+        return problem.powers(self.errors)
 
 
 @dataclass(frozen=True)

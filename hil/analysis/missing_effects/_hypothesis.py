@@ -18,7 +18,14 @@ Array = npt.NDArray[np.float64]
 
 TOLERANCE = 0.02
 """A number of a base is right to that share, where the model file states none, or it may be anything."""
+_NO_GEAR = 1e-3  # tolerance of a gear ratio of one: where there is no gear it is what it is
 _LONGEST_DELAY_S = 0.5
+
+
+def tolerance_of(model: Model, name: str) -> float:
+    """Share to which a base's number is right, if it is: by the model file, or what is usual."""
+    usual = _NO_GEAR if name == "gear_ratio" and model.parameters[name] == 1.0 else TOLERANCE
+    return float(model.tolerance.get(name, usual))
 
 
 @dataclass(frozen=True)
@@ -109,7 +116,7 @@ class Hypothesis:
             # a rigid axle's shaft torque steps from sample to sample: its slope is seen over a whole one
             step = 1.0 if self.base.kind == "rigid" else 1e-3
             return Coordinate(-1, name, value, scales[name], False, 0.0, _LONGEST_DELAY_S, step=step)
-        tolerance = self.base.tolerance.get(name, TOLERANCE)
+        tolerance = tolerance_of(self.base, name)
         return Coordinate(-1, name, value, 1.0, True, value * 1e-3, value * 1e3, base, tolerance=tolerance)
 
     def moved(self, coordinates: Sequence[Coordinate], u: Array) -> Hypothesis:

@@ -59,9 +59,12 @@ class Responses:
 
     def powers(self, hypothesis: Hypothesis) -> Powers:
         """Of the errors that a hypothesis leaves."""
+        return self._powers(self.response(hypothesis))
+
+    def _powers(self, response: ComplexArray) -> Powers:
         edges = edges_hz(self.problem.rate_hz)
         band = bands_of(edges, self.frequency_hz)
-        error = np.abs(self.response(hypothesis) - self.found) ** 2 * self.input_power[:, None] + self.rest
+        error = np.abs(response - self.found) ** 2 * self.input_power[:, None] + self.rest
         there = np.isfinite(error)
         count = np.stack([np.bincount(band, one, len(edges) - 1) for one in there.T.astype(float)])
         sums = np.stack([np.bincount(band, one, len(edges) - 1) for one in np.nan_to_num(error).T])
@@ -71,6 +74,10 @@ class Responses:
     def log_likelihood(self, hypothesis: Hypothesis) -> float:
         """Of the responses."""
         return float(np.sum(self.powers(hypothesis).log_likelihood(self.problem.noise)))
+
+    def most(self) -> float:
+        """Log likelihood of a model whose responses are those measured."""
+        return float(np.sum(self._powers(self.found).log_likelihood(self.problem.noise)))
 
     def misfit(self, hypothesis: Hypothesis) -> float:
         """Mean square of the logarithm of modelled over measured response, where that is coherent."""
@@ -138,8 +145,9 @@ def responses_of(problem: Problem) -> Responses | None:
     cross = np.sum([part[2] for part in parts], axis=0) / windows
     outputs = np.sum([part[3] for part in parts], axis=0) / windows
     rate = longest.rate_hz
-    frequency = np.arange(len(power)) * (0.5 * rate / (len(power) - 1))
-    used = (frequency >= edges_hz(rate)[1]) & (frequency <= 0.5 * rate) & (power > 1e-9 * np.max(power))
+    frequency: Array = np.arange(len(power)).astype(np.float64) * (0.5 * rate / (len(power) - 1))
+    lowest = max(edges_hz(rate)[1], min(one.lowest_hz for one in alike))
+    used = (frequency >= lowest) & (frequency <= 0.5 * rate) & (power > 1e-9 * np.max(power))
     found = cross / np.maximum(power, 1e-300)[:, None]
     rest = np.maximum(outputs - np.abs(found) ** 2 * power[:, None], 0.0)
     return Responses(problem, frequency[used], power[used], found[used], rest[used], windows)
@@ -177,8 +185,8 @@ def structures(problem: Problem) -> list[Hypothesis]:
     near = responses.fitted(base)
     alone = max((near, _best(responses, _scattered(responses, [base]))), key=responses.log_likelihood)
     found = [(0.0, alone)]
-    if responses.log_likelihood(alone) - responses.log_likelihood(near) < ALIKE:
-        return [near]
+    if responses.most() - responses.log_likelihood(alone) < ALIKE:
+        return [alone]
     for effect in EFFECTS.values():
         if effect.law.chain is None or not may_join(effect, alone):
             continue

@@ -41,7 +41,7 @@ def orders_of(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) -
 def _orders_by(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) -> list[float]:
     system = linear_system_of(point.hypothesis.packed()[0])
     orders = np.arange(FINE, _HIGHEST, FINE)
-    slopes, energy = np.zeros(len(orders), complex), np.zeros(len(orders))
+    slopes, energy, whole = np.zeros(len(orders), complex), np.zeros(len(orders)), 0.0
     for index, one in enumerate(problem.series):
         error = point.errors[index]
         count = len(error)
@@ -49,8 +49,11 @@ def _orders_by(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) 
         response = np.zeros((3, len(frequency)), complex)
         fast = frequency > 1.0 / SEGMENT_S  # what is slower the starts of windows take up
         response[:, fast] = system.response(frequency[fast], _SOURCES[side])
-        weight = problem.spectrum.weights(count, one.rate_hz).T ** 2
-        slope = problem.spectrum.sent_back(np.nan_to_num(error[:, one.has]), one.has, one.rate_hz)
+        weight = problem.spectrum.weights(count, one.rate_hz, one.lowest_hz).T ** 2
+        slope = problem.spectrum.sent_back(
+            np.nan_to_num(error[:, one.has]), one.has, one.rate_hz, one.lowest_hz
+        )
+        whole += float(np.sum(np.nan_to_num(error[:, one.has]) * slope))
         back = np.sum(np.conj(response[one.has]) * np.fft.rfft(slope, axis=0).T, axis=0)
         gain = np.sum(np.abs(response[one.has]) ** 2 * weight[one.has], axis=0)
         angle = problem.angles[index][: count * one.block, 0 if side == "wheel" else 1]
@@ -62,7 +65,8 @@ def _orders_by(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) 
         pushed = np.fft.irfft(back, count * finer) * finer
         slopes += over_angle(pushed, np.interp(at, np.arange(count), angle), len(orders)) / finer
         energy += _energy(speed, orders, frequency, gain)
-    promise = np.abs(slopes) ** 2 / np.maximum(energy, np.max(energy, initial=0.0) * 1e-9 + 1e-300)
+    promise = np.abs(slopes) ** 2 / np.maximum(energy, 1e-250)
+    promise[promise > whole] = 0.0  # more than there is: an order that the plant does not show
     turns = max(float(np.ptp(angle)) for angle in _angles(problem, side)) / (2 * np.pi)
     return peaks(orders, np.where(orders * turns >= PERIODS, promise, 0.0), _COUNT)
 

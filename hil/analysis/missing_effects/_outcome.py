@@ -11,7 +11,7 @@ import numpy.typing as npt
 from hil.analysis.missing_effects._series import Series
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse, Model
-from hil.plant import gear_ratio_of, pack, sensor_of, simulate_many
+from hil.plant import replayed
 
 Array = npt.NDArray[np.float64]
 Verdict = Literal["named", "none", "unknown"]
@@ -60,21 +60,21 @@ class Curve:
 
 @dataclass(frozen=True)
 class Replay:
-    """A stretch of a recording, and the states (5,) it begins in by the base and by the model given back."""
+    """A stretch of a recording, to be simulated as `hil simulate` does it."""
 
     series: Series
-    base_start: Array
-    start: Array
 
-    def outputs(self, model: Model, start: Array) -> Array:
+    def outputs(self, model: Model) -> Array:
         """What a model shows at every sample: n x 3, in the order of `OUTPUTS`."""
         one = self.series
-        slots, sensors = pack(model), np.stack([sensor_of(model, channel) for channel in OUTPUTS])
-        angles = one.angles(gear_ratio_of(model) or 1.0)
-        shown = simulate_many(
-            slots[None], one.torque, one.dt, start[None], sensors[None], angles=angles, load_nm=one.load
-        )
-        return np.asarray(shown[0])
+        shown = replayed(model, one.torque, one.dt, one.samples, one.load, one.first_wheel_angle_rad)
+        return np.column_stack([shown[name] for name in OUTPUTS])
+
+    def errors(self, model: Model) -> Array:
+        """Measured less simulated as block means, blocks x 3; NaN where a channel was not recorded."""
+        one, count = self.series, len(self.series.measured)
+        away = (one.samples - self.outputs(model))[: count * one.block]
+        return np.asarray(away.reshape(count, one.block, -1).mean(axis=1))
 
 
 @dataclass(frozen=True)

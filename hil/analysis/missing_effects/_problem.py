@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._hypothesis import Coordinate, Hypothesis
 from hil.analysis.missing_effects._series import Series
-from hil.analysis.missing_effects._spectrum import Spectrum
+from hil.analysis.missing_effects._spectrum import Powers, Spectrum, powers_of
 from hil.core.model import Model
 from hil.plant import gear_ratio_of, simulate_many
 
@@ -65,13 +65,13 @@ class Problem:
         there = np.isfinite(square)
         return bool(np.all(square[there] <= self.slow_noise * self.noise[there] ** 2))
 
+    def powers(self, errors: Sequence[Array]) -> Powers:
+        """Of errors of each recording, where they count."""
+        return powers_of(errors, self.rate_hz, self.signal, [one.lowest_hz for one in self.series])
+
     def mean_square(self, errors: Sequence[Array]) -> Array:
-        """Of each channel over all recordings, (3,); NaN where it was not recorded."""
-        whole = np.concatenate(errors)
-        there = np.isfinite(whole)
-        count = there.sum(axis=0)
-        sums = np.where(there, whole, 0.0) ** 2
-        return np.asarray(np.where(count > 0, sums.sum(axis=0) / np.maximum(count, 1), np.nan), dtype=float)
+        """Of each channel over all that counts of the recordings, (3,); NaN where it was not recorded."""
+        return self.powers(errors).mean_square()
 
     def first_states(self) -> list[Array]:
         """A first guess of each recording's start."""
@@ -105,7 +105,8 @@ class Problem:
         if not np.all(np.abs(seen) < _FAR):  # NaN as well
             seen = np.clip(np.nan_to_num(seen, nan=_FAR), -_FAR, _FAR)
         first = seen[:, 0] / self.noise[one.has]
-        return np.concatenate([self.spectrum.weighed(seen, one.has, one.rate_hz), first], axis=1)
+        windows = self.spectrum.weighed(seen, one.has, one.rate_hz, one.lowest_hz)
+        return np.concatenate([windows, self.spectrum.begun(seen, one.has, one.rate_hz), first], axis=1)
 
     def start_basis(self, index: int, hypothesis: Hypothesis, start: Array) -> tuple[Array, Array, Array]:
         """Change of weighed errors with a recording's start (numbers x states), sizes, and its basis."""

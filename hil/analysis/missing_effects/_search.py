@@ -36,6 +36,10 @@ _TRIED = 8  # hypotheses that a step begins with, the most promising ones; half 
 _RIVALS = 2  # of a step are fitted to their end
 _SETTLED = 0.1  # growth of log likelihood between rounds that ends them
 _BESIDE = 0.3  # of an effect's first number: where an optional one in the same unit begins
+_ASIDE = (
+    -0.02,
+    0.02,
+)  # of an optional number that is set already: how far it is moved to see what it could bring
 _MOST_NAMES = 4
 
 
@@ -243,12 +247,14 @@ def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candi
         use = hypothesis.terms[index]
         first = EFFECTS[use.id].parameters[0]
         size = _BESIDE * abs(float(use.values[first.name])) if parameter.unit == first.unit else 0.0
+        set_already = float(use.values[parameter.name])
+        aside = [set_already * (1.0 + share) for share in _ASIDE if set_already != parameter.default]
         wider = [
             hypothesis.without(index).with_term(
                 EffectUse(use.id, {**use.values, parameter.name: value}), opened | {parameter.name}
             )
-            for value in (*parameter.opens, size, -size)
-            if value and parameter.lower <= value <= parameter.upper
+            for value in (*parameter.opens, size, -size, *aside)
+            if value and value != set_already and parameter.lower <= value <= parameter.upper
         ]
         if not wider:
             continue
@@ -258,6 +264,8 @@ def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candi
             continue
         show(f"{best.names[index]}: {parameter.name}")
         begins = wider[int(np.argmax(gains))]
+        if begins.terms[index].values[parameter.name] in aside:
+            begins = replace(hypothesis, opened=(*hypothesis.opened[:index], opened | {parameter.name}))
         if 0.0 in parameter.opens:  # where it does nothing: a fit goes on from what is settled
             rest = EffectUse(use.id, {**use.values, parameter.name: 0.0})
             begins = hypothesis.without(index).with_term(rest, opened | {parameter.name})

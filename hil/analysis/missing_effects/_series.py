@@ -5,16 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.frequency_response import period_samples
+from hil.analysis.missing_effects._spectrum import edges_hz, powers_of
 from hil.analysis.stretches import excerpts, unbroken
 from hil.core.channels import INPUT, OUTPUTS, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
-from hil.plant import load_of
+from hil.plant import load_of, turned
 
 Array = npt.NDArray[np.float64]
 
@@ -22,6 +25,7 @@ FIT_RATE_HZ = 250.0
 """Errors are averaged down to this rate: twice the bandwidth of anything mechanical in an axle."""
 _EVEN_SHARE = 0.05  # of a sample, by which stamps may be off their grid and still be taken as they are
 _USUAL = 0.95  # of the steps between uneven stamps are at most as long as a block
+_EXCITED = 1e-2  # of the octave that a periodic torque excites most, for an octave that it excites at all
 _FIRST_SAMPLES = 5  # whose mean is the first guess of where a recording begins
 
 
@@ -55,6 +59,20 @@ class Series:
         """Of block means."""
         return 1.0 / (self.dt * self.block)
 
+    @cached_property
+    def lowest_hz(self) -> float:
+        """Upper edge of the last octave below all that a periodic torque excites: from there errors count.
+
+        What is not excited decides nothing: below the lines of a multisine stands what drifts. Zero where a
+        torque does not repeat itself.
+        """
+        if period_samples(self.torque) is None:
+            return 0.0
+        count = len(self.measured)
+        torque = self.torque[: count * self.block].reshape(count, self.block).mean(axis=1)[:, None]
+        power = powers_of([torque - np.mean(torque)], self.rate_hz, np.ones(1)).power.mean(axis=(0, 1))
+        return float(edges_hz(self.rate_hz)[np.argmax(power > _EXCITED * np.max(power))])
+
     def first_state(self, gear_ratio: float) -> Array:
         """A first guess of motor speed, wheel speed and shaft torque, no motion inside a tyre: (5,)."""
         motor, wheel, shaft = self.samples[:_FIRST_SAMPLES].mean(axis=0)
@@ -66,15 +84,7 @@ class Series:
 
     def angles(self, gear_ratio: float) -> Array:
         """Wheel and rotor angle in rad at every sample (n x 2), integrated from the recorded speeds."""
-        motor, wheel = self.samples[:, 0], self.samples[:, 1]
-        if not self.has[1]:
-            wheel = motor / gear_ratio
-        if not self.has[0]:
-            motor = wheel * gear_ratio
-        speeds = np.nan_to_num(np.column_stack([wheel, motor]))
-        turned = np.cumsum(0.5 * self.dt * (speeds[1:] + speeds[:-1]), axis=0)
-        first = self.first_wheel_angle_rad * np.array([1.0, gear_ratio])
-        return np.asarray(first + np.concatenate([np.zeros((1, 2)), turned]), dtype=float)
+        return turned(self.samples, self.dt, gear_ratio, self.first_wheel_angle_rad)
 
 
 def series_of(model: Model, recordings: Sequence[Recording]) -> list[Series]:

@@ -24,6 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
+Channels = npt.NDArray[np.bool_]
 
 SEGMENT_S = 4.0
 """Windows in which errors are compared; a misfit slower than this counts once a window."""
@@ -43,21 +44,46 @@ class Spectrum:
     edges_hz: Array
     variance: Array
 
-    def weights(self, length: int, rate_hz: float) -> Array:
-        """One over the standard deviation of each bin of a transform of so many blocks: bins x 3."""
-        return np.asarray(1.0 / np.sqrt(self.variance.T[_bands(self.edges_hz, length, rate_hz)]))
+    def weights(self, length: int, rate_hz: float, lowest_hz: float) -> Array:
+        """One over the standard deviation of each bin of a transform of so many blocks: bins x 3.
 
-    def weighed(self, values: Array, channels: npt.NDArray[np.bool_], rate_hz: float) -> Array:
-        """sets x blocks x channels as numbers, sets x numbers, half whose squares add to -log L."""
+        Zero in bands below `lowest_hz`, which do not count.
+        """
+        bands = np.where(self.edges_hz[1:] > lowest_hz, 1.0 / np.sqrt(self.variance), 0.0)
+        return np.asarray(bands.T[_bands(self.edges_hz, length, rate_hz)])
+
+    def weighed(self, values: Array, channels: Channels, rate_hz: float, lowest_hz: float) -> Array:
+        """sets x blocks x channels as numbers, sets x numbers, half whose squares add to -log L.
+
+        Args:
+            channels: which of the three `values` has.
+            lowest_hz: bands below do not count.
+        """
         length = _window_of(values.shape[1], rate_hz)
-        transform = transformed(values, rate_hz) * self.weights(length, rate_hz)[:, channels]
+        transform = transformed(values, rate_hz) * self.weights(length, rate_hz, lowest_hz)[:, channels]
         return np.asarray(transform.reshape(len(values), -1).view(float), dtype=float)
 
-    def sent_back(self, values: Array, channels: npt.NDArray[np.bool_], rate_hz: float) -> Array:
+    def begun(self, values: Array, channels: Channels, rate_hz: float) -> Array:
+        """sets x blocks x channels as weighed numbers of the beginning, where windows weigh little.
+
+        The first window rises from zero: what it leaves of a block's weight counts by the whole variance.
+        """
+        weight = _unseen(values.shape[1], rate_hz)
+        bins = np.bincount(
+            _bands(self.edges_hz, _window_of(values.shape[1], rate_hz), rate_hz),
+            minlength=len(self.edges_hz) - 1,
+        )
+        scale = np.sqrt(self.variance[channels] @ bins / np.sum(bins))
+        part = values[:, : len(weight)] * weight[:, None] / scale
+        return np.asarray(part.reshape(len(values), -1), dtype=float)
+
+    def sent_back(self, values: Array, channels: Channels, rate_hz: float, lowest_hz: float) -> Array:
         """Slope of half the squares of `weighed` by each of values (blocks x channels): its transpose."""
         firsts, window = _windows(len(values), rate_hz)
         length = len(window)
-        slopes = transformed(values[None], rate_hz)[0] * self.weights(length, rate_hz)[:, channels] ** 2
+        slopes = (
+            transformed(values[None], rate_hz)[0] * self.weights(length, rate_hz, lowest_hz)[:, channels] ** 2
+        )
         slopes[:, 0] *= 2.0  # of one sign of frequency only
         if length % 2 == 0:
             slopes[:, -1] *= 2.0
@@ -116,6 +142,12 @@ class Powers:
         """Of the log likelihood by the power of each bin (3 x bands)."""
         return np.asarray(-(1.0 + (inside - 1.0) * n / p) / (p + d) / inside)
 
+    def mean_square(self) -> Array:
+        """Of each channel over what counts, (3,); NaN where nothing does."""
+        count = np.sum(self.bins, axis=(0, 2))
+        sums = np.sum(self.bins * self.power, axis=(0, 2))
+        return np.where(count > 0.0, sums / np.maximum(count, 1e-300), np.nan)
+
     def _terms(self, noise: Array) -> tuple[Array, Array, Array, Array]:
         """Mean power, at least that of noise; noise; what no model is right to; bins of a window."""
         total = np.sum(self.bins, axis=0)
@@ -146,11 +178,28 @@ def _windows(blocks: int, rate_hz: float) -> tuple[npt.NDArray[np.int64], Array]
     return np.linspace(0, blocks - length, count).round().astype(np.int64), window
 
 
-def powers_of(errors: Sequence[Array], rate_hz: float, signal: Array) -> Powers:
-    """Powers of errors of each recording (blocks x 3, NaN where not recorded), by half-lapped windows."""
+def _unseen(blocks: int, rate_hz: float) -> Array:
+    """Root of the share of each block's weight that a recording's first window leaves, as it rises."""
+    firsts, window = _windows(blocks, rate_hz)
+    length = len(window)
+    seen = np.zeros(blocks)
+    for first in firsts.tolist():
+        seen[first : first + length] += window**2
+    rises = seen[: length // 2] * length / 2.0
+    return np.asarray(np.sqrt(np.maximum(1.0 - rises, 0.0)))
+
+
+def powers_of(
+    errors: Sequence[Array], rate_hz: float, signal: Array, lowest_hz: Sequence[float] | None = None
+) -> Powers:
+    """Powers of errors of each recording (blocks x 3, NaN where not recorded), by half-lapped windows.
+
+    Args:
+        lowest_hz: of each recording: bands below do not count; zero when left out.
+    """
     edges = edges_hz(rate_hz)
     power, bins = [], []
-    for error in errors:
+    for error, lowest in zip(errors, lowest_hz or [0.0] * len(errors), strict=True):
         squares = np.abs(transformed(error[None], rate_hz)[0]) ** 2
         band = _bands(edges, _window_of(len(error), rate_hz), rate_hz)
         inside = np.stack([np.bincount(band, minlength=len(edges) - 1)] * error.shape[1]).astype(float)
@@ -158,7 +207,7 @@ def powers_of(errors: Sequence[Array], rate_hz: float, signal: Array) -> Powers:
             sums = np.stack([np.bincount(band, column, len(edges) - 1) for column in one.T])
             there = np.isfinite(sums)
             power.append(np.where(there, sums / np.maximum(inside, 1.0), 0.0))
-            bins.append(np.where(there, _LAPPED * inside, 0.0))
+            bins.append(np.where(there & (edges[1:] > lowest), _LAPPED * inside, 0.0))
     return Powers(edges, np.array(power), np.array(bins), signal)
 
 

@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._curve import curves_of
 from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised, point_at
-from hil.analysis.missing_effects._hypothesis import TOLERANCE, Hypothesis
+from hil.analysis.missing_effects._hypothesis import Hypothesis, tolerance_of
 from hil.analysis.missing_effects._noise import rounding_step
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains, weights_of
 from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Replay, Verdict
@@ -49,7 +49,8 @@ class Judged:
     done: Search
     left: Callable[[Candidate], Array]
     gaps: Callable[[Candidate], tuple[dict[str, Gap], dict[str, Gap]]]
-    replays: Callable[[Candidate], tuple[tuple[Replay, ...], tuple[Replay, ...]]]
+    fitted: tuple[Replay, ...]
+    held_out: tuple[Replay, ...]
 
 
 def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
@@ -70,11 +71,9 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
         (effects if named.confidence >= HALF else doubtful).append(named)
     numbers = _numbers(at, of.asked)
     far = _is_far(numbers, done)
-    if not far and done.problem.is_noise(best.point.errors):  # what has no name bends numbers as well
-        sure = sum(
-            float(w) for one, w in zip(candidates, weights, strict=True) if {*one.names} >= {*best.names}
-        )
-        effects += _mismatches(done, numbers, sure, best)
+    # a number is wrong where nothing is missing (what is missing bends numbers as well) and noise is left
+    if not far and not best.names and done.problem.is_noise(best.point.errors):
+        effects += _mismatches(done, numbers, best)
     if done.problem.is_noise(best.point.errors):
         effects += _roundings(done, float(weights[candidates.index(best)]))
     something_else = _remains(of, done.found[()], best) if best.names else 0.0
@@ -88,7 +87,7 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
         verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), something_else, numbers, far,
         *of.gaps(best), best.point.hypothesis.model(),
         curves_of(best.point.hypothesis, done.problem.series), notes, seconds,
-        done.problem.noise * np.sqrt(done.problem.series[0].block), at.drawn(_DRAWN), *of.replays(best),
+        done.problem.noise * np.sqrt(done.problem.series[0].block), at.drawn(_DRAWN), of.fitted, of.held_out,
     )  # fmt: skip
 
 
@@ -254,7 +253,7 @@ def _off(name: str, numbers: Mapping[str, tuple[float, float, float]], done: Sea
     """How far a number moved and how sure that is, both in tolerances."""
     base, found, error = numbers[name]
     size = abs(base) or done.problem.scales[name]  # only numbers that have a scale may be zero
-    tolerance = done.problem.model.tolerance.get(name, TOLERANCE) * size
+    tolerance = tolerance_of(done.problem.model, name) * size
     return abs(found - base) / tolerance, error / tolerance
 
 
@@ -269,7 +268,7 @@ def _is_far(numbers: Mapping[str, tuple[float, float, float]], done: Search) -> 
 
 
 def _mismatches(
-    done: Search, numbers: Mapping[str, tuple[float, float, float]], weight: float, best: Candidate
+    done: Search, numbers: Mapping[str, tuple[float, float, float]], best: Candidate
 ) -> list[Named]:
     """Numbers that are wrong by more than their tolerance and doubt, each with the probability of that.
 
@@ -280,7 +279,7 @@ def _mismatches(
     found = []
     for name, (_, value, error) in numbers.items():
         moved, doubt = _off(name, numbers, done)
-        sure = weight * float(ndtr((moved - 1.0) / max(doubt, 1e-12)))
+        sure = float(ndtr((moved - 1.0) / max(doubt, 1e-12)))
         if sure >= HALF and moved - 1.0 > doubt and _shows(done.problem, best.point, name):
             found.append(
                 Named(

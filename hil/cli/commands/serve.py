@@ -30,7 +30,9 @@ def execute(options: Serve) -> int:
     for_s = options.for_s
     # The extra 'service' brings what they need.
     from hil.service.notices import read_settings
+    from hil.service.recordings import Room
     from hil.service.serving import ServeRequest, make_token, serve
+    from hil.service.sign_in import read_settings as read_sign_in
 
     if for_s is not None and not for_s > 0:
         raise BadInputError(f"--for is {for_s:g}", fix="give seconds greater than 0, or leave it out")
@@ -45,6 +47,7 @@ def execute(options: Serve) -> int:
             print(f"# token of {made.token.name}, {made.token.role}; it is printed only once\n{made.secret}")
         return 0
     notices = read_settings(options.notices) if options.notices is not None else None
+    sign_in = read_sign_in(options.sign_in) if options.sign_in is not None else None
     if options.test_notices:
         return _test_notices(data, notices, as_json=options.as_json)
     stop = StopRequest()
@@ -68,10 +71,12 @@ def execute(options: Serve) -> int:
         database=options.database,
         store=options.store,
         local_days=options.keep_local,
+        room=Room(most_bytes=1e9 * options.recordings_gb),
         hosts=allow_host,
         rate=options.rate,
         for_s=math.inf if for_s is None else for_s,
         notices=notices,
+        sign_in=sign_in,
         ready=ready,
         stop=stop,
     )

@@ -253,6 +253,9 @@ class Serve:
             help="second place for files of runs: s3://bucket/prefix, or a folder on another disk",
         ),
     ] = ""
+    recordings_gb: Annotated[
+        float, typer.Option(min=0, metavar="GB", help="most that recordings given to the service may take")
+    ] = 100.0
     keep_local: Annotated[
         float,
         typer.Option(min=0, metavar="DAYS", help="days to keep files in DIR after they are in the store"),
@@ -281,6 +284,12 @@ class Serve:
     notices: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="TOML file of webhooks and mail for runs that end, fail or wait"),
+    ] = None
+    sign_in: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="TOML file: where people sign in by OpenID Connect, and their roles"
+        ),
     ] = None
     test_notices: Annotated[
         bool, typer.Option("--test-notices", help="send a test to everyone in --notices, print it and exit")

@@ -15,6 +15,7 @@ PURPOSES = {
     "tdms": "TDMS files",
     "sign": "signatures",
     "service": "the service",
+    "sign-in": "signing in by OpenID Connect",
     "campaign": "campaigns in several processes or on several machines",
     "fmu": "functional mock-up units",
 }
@@ -33,6 +34,9 @@ MODULES = {
     "sqlalchemy": "service",
     "alembic": "service",
     "fsspec": "service",
+    "authlib": "sign-in",
+    "joserfc": "sign-in",
+    "requests": "sign-in",
     "dask": "campaign",
     "distributed": "campaign",
     "pythonfmu": "fmu",

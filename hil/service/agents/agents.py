@@ -23,7 +23,8 @@ from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.execution.data_folder import files_of, folder_of
 from hil.execution.run_execution import PLAN, RunningRun
 from hil.service.agents.remote_bench import Agent, AgentsRun, RemoteBench
-from hil.service.store import AgentStore, BenchStore, DatabaseAwayError, LeaseStore, RunStore
+from hil.service.store import AgentStore, BenchStore, DatabaseAwayError, RunStore
+from hil.service.turns import Turns
 from test_plans import Plan, plan_from_text
 
 _KEPT_AGAIN_S = 20.0  # a third of how long a bench is an agent's without being heard of
@@ -37,6 +38,7 @@ class Agents:
 
     Args:
         service: the name of this one in the database.
+        turns: whose turn it is on a bench.
         folder: where runs have their folders.
         source: where a plan lies here by its name, with what it loads beside it.
         changed: called whenever something of a bench is to be shown anew.
@@ -47,12 +49,12 @@ class Agents:
         engine: Engine,
         service: str,
         runs: RunStore,
-        leases: LeaseStore,
+        turns: Turns,
         folder: Path,
         source: Callable[[str], Path],
         changed: Callable[[str], None],
     ) -> None:
-        self._engine, self._runs, self._leases, self._folder = engine, runs, leases, folder
+        self._engine, self._runs, self._turns, self._folder = engine, runs, turns, folder
         self._source = source
         self._store = AgentStore(engine, service)
         self._changed = changed
@@ -317,8 +319,7 @@ class Agents:
         """The run whose turn it is; None while there is one that the agent has not delivered."""
         if bench.running is not None:
             return bench.running.data.id if bench.report.running is None else None
-        lease = self._leases.of(bench.name)
-        run = self._runs.next_of(bench.name, lease.holder if lease else None)
+        run = self._turns.next_of(bench.name)
         return None if run is None else run.id
 
 

@@ -8,7 +8,8 @@ from typing import Annotated
 from fastapi import Depends, Request
 from fastapi.security import APIKeyCookie, HTTPAuthorizationCredentials, HTTPBearer
 
-from hil.api_schemas.api import LADDER, Me, Role
+from hil.api_schemas.api import LADDER, Me, Role, TokenData
+from hil.api_schemas.people import PersonData
 from hil.service.api._problems import RefusedError
 from hil.service.service import Service
 from hil.service.stop_post import COOKIE
@@ -39,13 +40,15 @@ def who(
     Raises:
         RefusedError: no token, or none that is valid.
     """
-    if not service.tokens.any():
+    if service.sign_in is None and not service.tokens.any():
         return Me(name="local", role="admin", tokens=False)
-    tokens, owner = service.tokens, None
+    owner: TokenData | PersonData | None = None
     if header is not None:
-        owner = tokens.owner_of(header.credentials)
+        owner = service.tokens.owner_of(header.credentials)
     elif cookie:
-        owner = tokens.owner_of_session(cookie)
+        owner = service.tokens.owner_of_session(cookie)
+        if owner is None and service.sign_in is not None:
+            owner = service.people.of_session(cookie)
     if owner is None:
         raise RefusedError(401, "a valid token is needed", fix="send it as 'Authorization: Bearer TOKEN'")
     return Me(name=owner.name, role=owner.role, tokens=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Body, Path, Query, Request
 
@@ -24,17 +24,12 @@ from hil.core.errors import HilError
 from hil.execution.data_folder import LOCK
 from hil.service.agents.remote_bench import RemoteBench
 from hil.service.api._access import AgentItself, Engineer, TheService, Viewer
+from hil.service.api._given_files import PIECE
 from hil.service.api._problems import RefusedError, missing
 from hil.service.service import Service
 
 router = APIRouter(tags=["agents"])
 _WAITS_S = 0.5  # for something to do, so that an agent hears it at once
-_PIECE: dict[str, Any] = {
-    "requestBody": {
-        "required": True,
-        "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
-    }
-}
 
 
 @router.get("/agents", name="list_agents")
@@ -79,7 +74,7 @@ async def take_run(agent: AgentId, bench: BenchName, service: TheService, me: Ag
     return Taken(run=taken)
 
 
-@router.put("/agents/{agent}/runs/{run}/files/{name}", name="send_run_file", openapi_extra=_PIECE)
+@router.put("/agents/{agent}/runs/{run}/files/{name}", name="send_run_file", openapi_extra=PIECE)
 async def send_run_file(
     agent: AgentId,
     run: RunId,

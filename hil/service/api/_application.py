@@ -10,10 +10,12 @@ from starlette.types import ASGIApp
 
 from hil.service.api import (
     _agents,
+    _bench_files,
     _benches,
     _campaigns,
     _comparisons,
     _design,
+    _handovers,
     _health,
     _layouts,
     _live,
@@ -22,11 +24,15 @@ from hil.service.api import (
     _people,
     _pictures,
     _plans,
+    _recordings,
+    _reservations,
     _run_list,
     _run_views,
     _runs,
+    _sign_in,
     _studies,
     _trends,
+    _versions,
 )
 from hil.service.api._guard import Guard, Guarding
 from hil.service.api._problems import RESPONSES, answer_problems
@@ -37,6 +43,8 @@ PREFIX = "/api/v1"
 _PARTS = (
     _health,
     _benches,
+    _reservations,
+    _handovers,
     _agents,
     _live,
     _plans,
@@ -48,10 +56,14 @@ _PARTS = (
     _comparisons,
     _trends,
     _design,
+    _bench_files,
+    _versions,
+    _recordings,
     _studies,
     _campaigns,
     _layouts,
     _people,
+    _sign_in,
 )
 
 

@@ -9,6 +9,7 @@ from hil.core.errors import StopWay
 from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
+from hil.service.api._reserved import refuse_reserved
 from hil.service.service import Service
 from hil.service.stop_post import COOKIE
 
@@ -90,6 +91,7 @@ async def reset_bench(bench: BenchName, service: TheService, me: Engineer) -> Be
 @router.put("/benches/{bench}/lease", name="take_lease")
 async def take_lease(bench: BenchName, wanted: LeaseWanted, service: TheService, me: Operator) -> LeaseData:
     """Reserve a bench for a time: runs of others wait. Repeat the request to extend it."""
+    refuse_reserved(service, known(service, bench), me, wanted.for_s)
     lease = service.leases.take(known(service, bench), me.name, wanted.for_s)
     if lease is None:
         raise RefusedError(409, "another user holds the bench", where=bench, fix="wait until it is released")

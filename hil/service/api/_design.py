@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Callable, Iterator
-from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Request, Response
 
@@ -23,43 +20,40 @@ from hil.api_schemas.design import (
     SegmentsData,
     SegmentsWanted,
 )
-from hil.core.errors import BadInputError
-from hil.core.files import read_text
 from hil.service.api._access import Engineer, TheService, Viewer
+from hil.service.api._given_files import GIVEN, body_of, described, file_text, readable
 from hil.service.api._problems import RefusedError, missing
-from hil.service.files.catalogues import Catalogue, controller_data, model_data
+from hil.service.api._versions import BasedOn
+from hil.service.files.catalogues import controller_data, model_data
 from hil.service.service import Service
 
 router = APIRouter(tags=["design"])
-T = TypeVar("T")
-_TOML = "application/toml"
-_GIVEN: dict[str, Any] = {
-    "requestBody": {"required": True, "content": {_TOML: {"schema": {"type": "string"}}}}
-}
 
 
 @router.get("/models", name="list_models")
 async def list_models(service: TheService, me: Viewer) -> list[ModelData]:
     """All models, built-in and uploaded."""
     del me
-    return list(_readable(service.models, model_data))
+    return list(readable(service.models, model_data))
 
 
 @router.get("/models/{model}/text", name="get_model_text", response_class=Response)
 async def get_model_text(model: FileName, service: TheService, me: Viewer) -> Response:
     """A model's file."""
     del me
-    return _text(service.models, "model", model)
+    return file_text(service.models, "model", model)
 
 
-@router.put("/models/{model}", name="give_model", openapi_extra=_GIVEN)
-async def give_model(model: FileName, request: Request, service: TheService, me: Engineer) -> ModelData:
+@router.put("/models/{model}", name="give_model", openapi_extra=GIVEN)
+async def give_model(
+    model: FileName, request: Request, service: TheService, me: Engineer, based_on: BasedOn = ""
+) -> ModelData:
     """Upload a model file (TOML); the content of a name cannot be changed."""
-    text = await _body(request, model)
+    text = await body_of(request, model)
     await service.upload_reader.read("model", model, text)
-    service.models.give(model, text, me.name)
+    service.models.give(model, text, me.name, based_on)
     service.log.add(me.name, me.role, "model given", model)
-    return _there(service.models, model_data, "model", model)
+    return described(service.models, model_data, "model", model)
 
 
 @router.delete("/models/{model}", name="remove_model", status_code=204)
@@ -74,26 +68,26 @@ async def remove_model(model: FileName, service: TheService, me: Engineer) -> No
 async def list_controllers(service: TheService, me: Viewer) -> list[ControllerData]:
     """All controllers, built-in and uploaded."""
     del me
-    return list(_readable(service.controllers, controller_data))
+    return list(readable(service.controllers, controller_data))
 
 
 @router.get("/controllers/{controller}/text", name="get_controller_text", response_class=Response)
 async def get_controller_text(controller: FileName, service: TheService, me: Viewer) -> Response:
     """A controller's file."""
     del me
-    return _text(service.controllers, "controller", controller)
+    return file_text(service.controllers, "controller", controller)
 
 
-@router.put("/controllers/{controller}", name="give_controller", openapi_extra=_GIVEN)
+@router.put("/controllers/{controller}", name="give_controller", openapi_extra=GIVEN)
 async def give_controller(
-    controller: FileName, request: Request, service: TheService, me: Engineer
+    controller: FileName, request: Request, service: TheService, me: Engineer, based_on: BasedOn = ""
 ) -> ControllerData:
     """Upload a controller file (TOML); uploaded plans can load it by name."""
-    text = await _body(request, controller)
+    text = await body_of(request, controller)
     await service.upload_reader.read("controller", controller, text)
-    service.controllers.give(controller, text, me.name)
+    service.controllers.give(controller, text, me.name, based_on)
     service.log.add(me.name, me.role, "controller given", controller)
-    return _there(service.controllers, controller_data, "controller", controller)
+    return described(service.controllers, controller_data, "controller", controller)
 
 
 @router.delete("/controllers/{controller}", name="remove_controller", status_code=204)
@@ -166,34 +160,3 @@ def _chosen(service: Service, wanted: DraftWanted) -> dict[str, Any]:
     if path is None:
         raise missing("model", wanted.model)
     return {**wanted.model_dump(), "model": str(path.resolve())}
-
-
-def _readable(catalogue: Catalogue[Any], describe: Callable[[Catalogue[Any], str, Path], T]) -> Iterator[T]:
-    """The description of all that can still be read."""
-    for name, path in catalogue.paths().items():
-        with contextlib.suppress(BadInputError):
-            yield describe(catalogue, name, path)
-
-
-def _there(
-    catalogue: Catalogue[Any], describe: Callable[[Catalogue[Any], str, Path], T], kind: str, name: str
-) -> T:
-    path = catalogue.path(name)
-    if path is None:
-        raise missing(kind, name)
-    return describe(catalogue, name, path)
-
-
-def _text(catalogue: Catalogue[Any], kind: str, name: str) -> Response:
-    path = catalogue.path(name)
-    if path is None:
-        raise missing(kind, name)
-    headers = {"content-disposition": f'attachment; filename="{name}.toml"'}
-    return Response(read_text(path), media_type=_TOML, headers=headers)
-
-
-async def _body(request: Request, where: str) -> str:
-    try:
-        return (await request.body()).decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise RefusedError(422, "is not UTF-8", where=where) from error

@@ -16,12 +16,13 @@ from hil.api_schemas.agent import MOST_PIECE_BYTES
 from hil.service.store import in_turns
 
 MOST_BODY_BYTES = 256_000
-#: What an agent sends of a run's file may be longer: MOST_PIECE_BYTES.
-_PIECE = re.compile(r"/api/v1/agents/[0-9a-f]{32}/runs/[0-9]+/files/[^/]+")
+#: A piece of a file may be longer, of a run's that an agent sends or of a recording: MOST_PIECE_BYTES.
+_PIECE = re.compile(r"/api/v1/(agents/[0-9a-f]{32}/runs/[0-9]+/files/[^/]+|recordings/[0-9]+/content)")
 _EMERGENCY = "/emergency-stop"
 _PLAIN_NAME = re.compile(r"[A-Za-z0-9.:-]{1,255}")
 _MOST_ADDRESSES = 10_000
 _SAFE = ("GET", "HEAD", "OPTIONS")
+_OTHER_SITES = ("cross-site", "same-site")
 _POLICY = (
     "default-src 'self'; img-src 'self' data:; object-src 'none'; base-uri 'none'; "
     "frame-ancestors 'none'; form-action 'self'"
@@ -99,6 +100,8 @@ class Guard:
             return 421, "unknown host name; start the service with --allow-host NAME"
         origin = headers.get("origin")
         if origin is not None and scope["method"] not in _SAFE and urlsplit(origin).netloc != host:
+            return 403, "the request comes from another site's page"
+        if headers.get("sec-fetch-site") in _OTHER_SITES and scope["method"] not in _SAFE:
             return 403, "the request comes from another site's page"
         if not _fits(headers.get("content-length", "0"), _most(scope)):
             return 413, f"at most {_most(scope)} bytes are accepted"

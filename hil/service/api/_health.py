@@ -10,6 +10,7 @@ from fastapi import APIRouter, Request, Response
 from hil.api_schemas.api import Health
 from hil.service.api._access import TheService, Viewer
 from hil.service.api._guard import StopAddress
+from hil.service.service import Service
 
 router = APIRouter(tags=["service"])
 
@@ -27,10 +28,11 @@ async def health(service: TheService, request: Request) -> Health:
         version=version,
         up_s=round(time.monotonic() - service.began_s, 1),
         runs_not_stored=keeper.waiting() if keeper else 0,
-        results_not_stored=service.studies.not_stored + service.campaigns.not_stored,
+        results_not_stored=_results_not_stored(service),
         store_problem=(keeper.rounds.problem or service.sharing.problem) if keeper else "",
         kept_apart=len(service.kept_apart),
         audit_problem=service.audit_problem,
+        sign_in=service.sign_in.settings.name if service.sign_in is not None else "",
         stop_url=stop.seen_from(request.headers.get("host", "")) if up else "",
     )
 
@@ -54,9 +56,13 @@ async def metrics(service: TheService, me: Viewer) -> Response:
     if service.keeper is not None:
         lines += ["# HELP hil_runs_not_stored Runs with files that are not in the store."]
         lines += ["# TYPE hil_runs_not_stored gauge", f"hil_runs_not_stored {service.keeper.waiting()}"]
-        count = service.studies.not_stored + service.campaigns.not_stored
-        lines += ["# HELP hil_results_not_stored Finished studies and campaigns with files not in the store."]
+        count = _results_not_stored(service)
+        lines += ["# HELP hil_results_not_stored Studies, campaigns, recordings with files not in the store."]
         lines += ["# TYPE hil_results_not_stored gauge", f"hil_results_not_stored {count}"]
     lines += ["# HELP hil_up_seconds Seconds since the service started.", "# TYPE hil_up_seconds counter"]
     lines.append(f"hil_up_seconds {time.monotonic() - service.began_s:.1f}")
     return Response("\n".join(lines) + "\n", media_type="text/plain; version=0.0.4")
+
+
+def _results_not_stored(service: Service) -> int:
+    return service.studies.not_stored + service.campaigns.not_stored + service.recordings.not_stored

@@ -54,20 +54,20 @@ async def live(
     channel: Annotated[list[ChannelName] | None, Query(max_length=24)] = None,
 ) -> StreamingResponse:
     """A bench as it changes: `state`, `samples`, `spectrum`, `criteria`, `marks` (docs/reference/api.md)."""
-    del me
     known(service, bench)
     if len(service.live_hub.viewers[bench]) >= _MOST_VIEWERS:
         raise RefusedError(429, f"the limit of {_MOST_VIEWERS} viewers is reached")
     return StreamingResponse(
-        _Watching(service, bench, channel or CHANNELS).events(), media_type="text/event-stream"
+        _Watching(service, bench, me.name, channel or CHANNELS).events(), media_type="text/event-stream"
     )
 
 
 class _Watching:
     """One viewer of one bench."""
 
-    def __init__(self, service: Service, bench: str, channels: Sequence[str]) -> None:
+    def __init__(self, service: Service, bench: str, name: str, channels: Sequence[str]) -> None:
         self._service, self._bench, self._cache = service, bench, service.live_hub.caches[bench]
+        self._name = name
         self._channels = tuple(dict.fromkeys(channels))
         self._marks: object = None
         self._run = -1
@@ -79,7 +79,8 @@ class _Watching:
     async def events(self) -> AsyncIterator[str]:
         """Whatever is new, as long as somebody takes it; a sender that has to wait skips nothing but time."""
         woken, viewers = asyncio.Event(), self._service.live_hub.viewers[self._bench]
-        viewers.add(woken)
+        viewers[woken] = self._name
+        self._service.changed(self._bench)
         try:
             while not self._service.closing:
                 woken.clear()
@@ -91,7 +92,8 @@ class _Watching:
                 except TimeoutError:
                     continue
         finally:
-            viewers.discard(woken)
+            viewers.pop(woken, None)
+            self._service.changed(self._bench)
 
     async def _gathered(self) -> str:
         return "".join(self._news())
@@ -155,6 +157,7 @@ def _state(service: Service, bench: str) -> dict[str, Any]:
         "bench": service.bench_data(bench).model_dump(mode="json"),
         "running": run.model_dump(mode="json") if run else None,
         "message": running.message if running else "",
+        "viewers": service.live_hub.names_of_viewers(bench),
         "queue": [one.model_dump(mode="json") for one in service.waiting(bench).runs],
     }
 

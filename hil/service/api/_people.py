@@ -43,6 +43,7 @@ async def log_out(service: TheService, request: Request, response: Response) -> 
     session = request.cookies.get(COOKIE)
     if session:
         service.tokens.close_session(session)
+        service.people.close_session(session)
         service.owners.changed()
     response.delete_cookie(COOKIE, httponly=True, samesite="strict")
 

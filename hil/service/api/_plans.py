@@ -13,6 +13,7 @@ from hil.core.errors import BadInputError
 from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError, missing
+from hil.service.api._versions import BasedOn
 from hil.service.files.plan_checks import mistakes_of
 
 router = APIRouter(tags=["plans"])
@@ -51,13 +52,15 @@ async def get_plan_text(plan: PlanName, service: TheService, me: Viewer) -> Resp
     name="give_plan",
     openapi_extra={"requestBody": {"required": True, "content": {_YAML: {"schema": {"type": "string"}}}}},
 )
-async def give_plan(plan: PlanName, request: Request, service: TheService, me: Engineer) -> PlanData:
+async def give_plan(
+    plan: PlanName, request: Request, service: TheService, me: Engineer, based_on: BasedOn = ""
+) -> PlanData:
     """Upload a plan (YAML), or replace an uploaded one."""
     try:
         text = (await request.body()).decode("utf-8")
     except UnicodeDecodeError as error:
         raise RefusedError(422, "is not UTF-8", where=plan) from error
-    found = await service.upload_reader.plan(plan, text, me.name)
+    found = await service.upload_reader.plan(plan, text, me.name, based_on)
     service.log.add(me.name, me.role, "plan given", plan)
     return found
 

@@ -20,8 +20,8 @@ def refuse_unknown_query(request: Request) -> None:
     if not request.query_params:
         return
     route = request.scope.get("route")
-    if not isinstance(route, APIRoute) or route.path.endswith("/emergency-stop"):
-        return  # no one who wants a bench safe is refused for a word too many
+    if not isinstance(route, APIRoute) or route.path.endswith(("/emergency-stop", "/sign-in/return")):
+        return  # no one who wants a bench safe is refused for a word too many, and providers add their own
     known = sorted(_names_of(route.dependant))
     for name in request.query_params:
         if name not in known:

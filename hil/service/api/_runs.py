@@ -90,7 +90,7 @@ async def queue_run(wanted: RunWanted, service: TheService, me: Operator) -> Run
 async def get_run(run: RunId, service: TheService, me: Viewer) -> RunData:
     """A run."""
     del me
-    return service.with_progress(there(service, run))
+    return service.queue_forecast.of_run(service.with_progress(there(service, run)))
 
 
 @router.patch("/{run}", name="change_run")

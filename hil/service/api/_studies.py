@@ -1,4 +1,4 @@
-"""Identifications and diagnoses of runs."""
+"""Identifications and diagnoses of runs and of recordings that people gave."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ from hil.engine import RECORDING
 from hil.service.api._access import Engineer, TheService, Viewer
 from hil.service.api._left_files import left_file
 from hil.service.api._problems import RefusedError, missing, refuse_elsewhere
+from hil.service.jobs.studies import StudyAsked
 from hil.service.service import Service
 
 router = APIRouter(tags=["studies"])
@@ -38,8 +39,9 @@ async def identify(
     wanted: Annotated[IdentificationWanted, Body()], service: TheService, me: Engineer
 ) -> StudyData:
     """Identify a model from runs, as `hil identify`; takes seconds to minutes."""
-    request = IdentifyRequest(recordings=await _recordings(service, wanted.runs))
-    found = service.studies.add("identification", wanted.runs, "", me.name, request, _IDENTIFIED_WITHIN_S)
+    request = IdentifyRequest(recordings=await _files(service, wanted.runs, wanted.recordings))
+    asked = StudyAsked("identification", wanted.runs, wanted.recordings, "", me.name)
+    found = service.studies.add(asked, request, _IDENTIFIED_WITHIN_S)
     return _logged(service, me, found)
 
 
@@ -52,14 +54,16 @@ async def diagnose(
     if model is None:
         raise missing("model", wanted.model)
     request = DiagnoseRequest(
-        recordings=await _recordings(service, wanted.runs),
+        recordings=await _files(service, wanted.runs, wanted.recordings),
         model=model.resolve(),
-        holdout=await _recordings(service, wanted.holdout),
+        holdout=await _files(service, wanted.holdout, wanted.holdout_recordings),
         at_most=wanted.at_most_min,
     )
     within_s = 60.0 * wanted.at_most_min + _WRITTEN_WITHIN_S
     runs = [*wanted.runs, *wanted.holdout]
-    found = service.studies.add("diagnosis", runs, wanted.model, me.name, request, within_s)
+    recordings = [*wanted.recordings, *wanted.holdout_recordings]
+    asked = StudyAsked("diagnosis", runs, recordings, wanted.model, me.name)
+    found = service.studies.add(asked, request, within_s)
     return _logged(service, me, found)
 
 
@@ -145,7 +149,7 @@ def _findings(content: dict[str, Any]) -> dict[str, Any]:
     return {**{name: content[name] for name in same}, **facts}
 
 
-async def _recordings(service: Service, runs: list[int]) -> list[Path]:
+async def _files(service: Service, runs: list[int], recordings: list[int]) -> list[Path]:
     found = []
     for number in runs:
         run = service.runs.get(number)
@@ -154,11 +158,21 @@ async def _recordings(service: Service, runs: list[int]) -> list[Path]:
         if run.state not in OVER or RECORDING not in service.with_progress(run).files:
             raise RefusedError(409, f"run {number} has no recording", fix="choose runs that have a recording")
         found.append((await service.file_of(number, RECORDING)).resolve())
+    for number in recordings:
+        given = service.recordings.get(number)
+        if given is None:
+            raise missing("recording", number)
+        if given.state != "ready":
+            raise RefusedError(
+                409, f"recording {number} is {given.state}", fix="choose recordings that are ready"
+            )
+        found.append((await service.recordings.file(given)).resolve())
     return found
 
 
 def _logged(service: Service, me: Me, study: StudyData) -> StudyData:
-    service.log.add(me.name, me.role, study.kind, f"study {study.id}", f"runs {study.runs} {study.model}")
+    of = f"runs {study.runs} recordings {study.recordings} {study.model}"
+    service.log.add(me.name, me.role, study.kind, f"study {study.id}", of)
     return study
 
 

@@ -1,26 +1,36 @@
-"""The catalogues of models and controllers: shipped ones and uploads, and the API data of their entries."""
+"""The catalogues of models, controllers and bench files: shipped ones and uploads, and their API data."""
 
 from __future__ import annotations
 
 import contextlib
 import functools
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic, TypeVar
 
 from hil.api_schemas.design import ControllerData, ModelData
+from hil.api_schemas.file_check import BenchFileData
 from hil.core.controller import Controller, controller_from_toml
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
 from hil.core.files.toml_file import parse_toml
 from hil.core.model import Model, load_model, model_from_dict
-from hil.engine.bench.bench_file import shipped
+from hil.engine.bench.bench_file import shipped, shipped_benches
 from hil.plant import refuse_too_stiff
 from hil.service.files.uploads import NameTakenError, Uploads
 from test_plans import library_controllers
 
 T = TypeVar("T")
 _KEPT = 200  # texts that stay read
+
+
+@dataclass(frozen=True)
+class BenchSummary:
+    """What a bench file says of itself."""
+
+    title: str
+    simulated: bool
 
 
 class Catalogue(Generic[T]):
@@ -56,7 +66,7 @@ class Catalogue(Generic[T]):
         """
         return self._parse(read_text(path), path.name)
 
-    def give(self, name: str, text: str, by: str) -> T:
+    def give(self, name: str, text: str, by: str, based_on: str = "") -> T:
         """Keep one; the same text may be given again.
 
         Raises:
@@ -66,7 +76,7 @@ class Catalogue(Generic[T]):
         if self.is_built_in(name):
             raise NameTakenError("is the name of a built-in one", where=name, fix="give it another name")
         found = self._parse(text, f"{name}.toml")
-        self._given.give(name, text, by)
+        self._given.give(name, text, by, based_on=based_on)
         return found
 
     def remove(self, name: str) -> bool:
@@ -82,6 +92,23 @@ def model_catalogue(given: Uploads) -> Catalogue[Model]:
 def controller_catalogue(given: Uploads) -> Catalogue[Controller]:
     """Controllers; given ones lie in the folder of the plans, which find them there by their names."""
     return Catalogue(given, library_controllers(), controller_from_toml)
+
+
+def bench_catalogue(given: Uploads) -> Catalogue[BenchSummary]:
+    """Bench files; given ones name device files and models that the service has."""
+    return Catalogue(given, {name: shipped(f"{name}.toml") for name in shipped_benches()}, _bench)
+
+
+def bench_file_data(catalogue: Catalogue[BenchSummary], name: str, path: Path) -> BenchFileData:
+    """What is shown of a bench file that lies there.
+
+    Raises:
+        BadInputError: it cannot be read any more.
+    """
+    found = catalogue.read(path)
+    return BenchFileData(
+        name=name, title=found.title, simulated=found.simulated, built_in=catalogue.is_built_in(name)
+    )
 
 
 def model_data(catalogue: Catalogue[Model], name: str, path: Path) -> ModelData:
@@ -120,6 +147,11 @@ def _model(text: str, where: str) -> Model:
     model = model_from_dict(parse_toml(text, where), where, text)
     refuse_too_stiff(model)
     return model
+
+
+def _bench(text: str, where: str) -> BenchSummary:
+    data = parse_toml(text, where)
+    return BenchSummary(str(data.get("title", ""))[:200], "simulation" in data)
 
 
 def _shipped_models() -> dict[str, Path]:

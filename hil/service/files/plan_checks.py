@@ -1,4 +1,4 @@
-"""Mistakes of a plan by line, of what reading it was refused with."""
+"""Mistakes of a file by line, of what reading it was refused with."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from hil.api_schemas.plan_check import PlanMistake
 from hil.core.errors import BadInputError
 
 _SEVERAL = re.compile(r"\d+ mistakes\n")
-_PLACE = re.compile(r"(?:.*: )?line (?P<line>\d+)(?:, key '(?P<key>[^']*)')?")
+_PLACE = re.compile(r"(?:.*(?:: |, ))?line (?P<line>\d+)(?:, key '(?P<key>[^']*)')?")
+#: Where a file is no TOML, as the standard library has it.
+_IN_TOML = re.compile(r"\(at line (?P<line>\d+), column \d+\)")
 _ON_A_LINE = re.compile(rf"{_PLACE.pattern}: (?P<text>.*)", re.DOTALL)
 
 
@@ -18,11 +20,11 @@ def mistakes_of(error: BadInputError) -> list[PlanMistake]:
         lines = error.what.split("\n  ")[1:]
         return [_mistake(_ON_A_LINE.fullmatch(one), one) for one in lines]
     text = f"{error.what}; {error.fix}" if error.fix else error.what
-    return [_mistake(_PLACE.match(error.where), text)]
+    return [_mistake(_PLACE.match(error.where) or _IN_TOML.search(error.what), text)]
 
 
 def _mistake(found: re.Match[str] | None, text: str) -> PlanMistake:
     if found is None:
         return PlanMistake(line=None, key="", text=text)
     groups = found.groupdict()
-    return PlanMistake(line=int(groups["line"]), key=groups["key"] or "", text=groups.get("text") or text)
+    return PlanMistake(line=int(groups["line"]), key=groups.get("key") or "", text=groups.get("text") or text)

@@ -91,13 +91,21 @@ class Plans:
         return self._with_controllers() / f"{name}.yaml"
 
     def give(
-        self, name: str, text: str, by: str, *, replace: bool = True, read: GivenPlan | None = None
+        self,
+        name: str,
+        text: str,
+        by: str,
+        *,
+        replace: bool = True,
+        read: GivenPlan | None = None,
+        based_on: str = "",
     ) -> PlanData:
         """Keep a plan; one of the same name is replaced. Runs that are queued keep theirs.
 
         Args:
             by: who gives it.
             replace: whether one of the same name may be replaced.
+            based_on: name of the plan that it was made from.
             read: what it says, if another process has read it; None reads it here.
 
         Raises:
@@ -109,7 +117,7 @@ class Plans:
         before = self._given.text(name) if replace else None
         read = read or read_given(name, text, self._with_controllers())
         fix = "look at it, then give yours again, or under another name"
-        self._given.give(name, text, by, instead_of=before, fix=fix)
+        self._given.give(name, text, by, instead_of=before, based_on=based_on, fix=fix)
         self._remember(text, read)
         return read.data
 
@@ -131,7 +139,7 @@ class Plans:
         text = _renamed(text, copy)
         if self.text(copy) not in (None, text):
             raise NameTakenError("is the name of another plan", where=copy, fix="give the copy another name")
-        return self.give(copy, text, by, replace=False)
+        return self.give(copy, text, by, replace=False, based_on=name)
 
     def loading(self, file: str) -> list[str]:
         """Names of given plans that load a controller file."""

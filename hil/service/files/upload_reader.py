@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from hil.api_schemas.api import PlanData
+from hil.api_schemas.file_check import WrittenKind
 from hil.api_schemas.upload import GivenKind
 from hil.core.errors import BadInputError
 from hil.service.files.plans import Plans
 from hil.service.worker_pool import READ_WITHIN_S, READING, TooLongError, WorkerPool
 from hil.service.worker_pool.plan_reading import GivenPlan
 from test_plans import Plan
+
+_CHECKED_WITHIN_S = 30.0
 
 
 class UploadReader:
@@ -20,6 +24,8 @@ class UploadReader:
     def __init__(self, plans: Plans) -> None:
         self._plans = plans
         self._reading = WorkerPool(niceness=5)
+        # What follows from a file is computed, which takes longer than to read it.
+        self._checking = WorkerPool(niceness=5, read_within_s=_CHECKED_WITHIN_S)
 
     async def read(self, kind: GivenKind, name: str, text: str, **more: str) -> dict[str, Any]:
         """What another process reads of a text that somebody gives.
@@ -34,7 +40,7 @@ class UploadReader:
             what = f"needs more than {READ_WITHIN_S:g} s of processor time to read"
             raise BadInputError(what, where=name, fix="make it shorter") from error
 
-    async def plan(self, name: str, text: str, by: str) -> PlanData:
+    async def plan(self, name: str, text: str, by: str, based_on: str = "") -> PlanData:
         """Keep a plan, read by another process first.
 
         Raises:
@@ -44,7 +50,29 @@ class UploadReader:
         folder = str(self._plans.fresh_folder().resolve())
         found = await self.read("plan", name, text, folder=folder)
         read = GivenPlan(PlanData.model_validate(found["data"]), tuple(found["files"]))
-        return self._plans.give(name, text, by, read=read)
+        return self._plans.give(name, text, by, read=read, based_on=based_on)
+
+    async def check_file(
+        self, kind: WrittenKind, name: str, text: str, models: Mapping[str, Path], model: str = ""
+    ) -> dict[str, Any]:
+        """What follows from a model, a controller or a bench file: fields of `FileCheck`.
+
+        Args:
+            models: those of the service by name.
+            model: that on which a controller's margins are; '' for none.
+
+        Raises:
+            BadInputError: all that is wrong with it, or reading it takes too long.
+            BenchError: that process failed.
+        """
+        paths = {one: str(path.resolve()) for one, path in models.items()}
+        try:
+            return await self._checking.ask(
+                f"{READING}file", kind=kind, name=name, text=text, models=paths, model=model
+            )
+        except TooLongError as error:
+            what = f"needs more than {_CHECKED_WITHIN_S:g} s of processor time to check"
+            raise BadInputError(what, where=name, fix="make it shorter") from error
 
     async def check(self, name: str, text: str) -> PlanData:
         """What a plan says that is not given yet.
@@ -65,5 +93,6 @@ class UploadReader:
         return self._plans.written(name, text, values)
 
     def close(self) -> None:
-        """End the process that reads."""
+        """End the processes that read."""
         self._reading.close()
+        self._checking.close()

@@ -63,6 +63,7 @@ class Uploads:
         by: str,
         *,
         instead_of: GivenText | None = None,
+        based_on: str = "",
         fix: str = "give it another name",
     ) -> Path:
         """Keep one; the same text may be given again. Where it is.
@@ -70,13 +71,14 @@ class Uploads:
         Args:
             by: who gives it.
             instead_of: what it replaces, as it was looked at; None if the name has to be free.
+            based_on: name of the one that it was made from.
             fix: what to do if it is not, or if that was replaced meanwhile.
 
         Raises:
             NameTakenError: the name stands for another content.
         """
         replaced = "" if instead_of is None else instead_of.sha256
-        kept = self._store.give(self.kind, name, text, by, instead_of=replaced)
+        kept = self._store.give(self.kind, name, text, by, instead_of=replaced, based_on=based_on)
         path = self.path(name)
         if not kept or path is None:
             there = self.text(name)

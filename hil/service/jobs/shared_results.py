@@ -1,4 +1,4 @@
-"""Studies and campaigns, shared by the services of a database.
+"""Studies, campaigns and given recordings, shared by the services of a database.
 
 What one is stays in its service's folder, which works without the database. In rounds each service tells the
 others of its own, and brings what they leave to the archive: whatever the moment at which it is killed, the
@@ -212,4 +212,4 @@ class SharedResults(Generic[R]):
         return f"{_FOLDERS[self._kind]}/{number:06d}/{name}"
 
 
-_FOLDERS: dict[ResultKind, str] = {"study": "studies", "campaign": "campaigns"}
+_FOLDERS: dict[ResultKind, str] = {"study": "studies", "campaign": "campaigns", "recording": "recordings"}

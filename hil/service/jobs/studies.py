@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import datetime
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,17 @@ from hil.service.jobs.jobs import Jobs
 from hil.service.jobs.shared_results import SharedResults
 
 _LAST_WORDS_S = 20.0
+
+
+@dataclass(frozen=True)
+class StudyAsked:
+    """What somebody wants studied: numbers of runs and of given recordings, held out ones among them."""
+
+    kind: StudyKind
+    runs: list[int]
+    recordings: list[int]
+    model: str
+    by: str
 
 
 class Studies(Jobs[StudyData]):
@@ -42,16 +53,14 @@ class Studies(Jobs[StudyData]):
 
     def add(
         self,
-        kind: StudyKind,
-        runs: list[int],
-        model: str,
-        by: str,
+        asked: StudyAsked,
         request: IdentifyRequest | DiagnoseRequest,
         within_s: float,
     ) -> StudyData:
         """Have one executed in its turn.
 
         Args:
+            asked: what it is of, as it is shown.
             request: without the place for the results.
             within_s: how long it may take.
 
@@ -62,11 +71,12 @@ class Studies(Jobs[StudyData]):
         number = self._records.take_number()
         study = StudyData(
             id=number,
-            kind=kind,
+            kind=asked.kind,
             state="waiting",
-            runs=runs,
-            model=model,
-            requested_by=by,
+            runs=asked.runs,
+            recordings=asked.recordings,
+            model=asked.model,
+            requested_by=asked.by,
             asked_at=datetime.datetime.now(datetime.UTC),
         )
         self._records.keep(study)

@@ -76,7 +76,7 @@ class LiveHub:
         overviews: Path,
     ) -> None:
         self._benches, self._running, self._overviews = benches, running, overviews
-        self.viewers: defaultdict[str, set[asyncio.Event]] = defaultdict(set)
+        self.viewers: defaultdict[str, dict[asyncio.Event, str]] = defaultdict(dict)  # each with a name
         self.caches: defaultdict[str, BroadcastCache] = defaultdict(BroadcastCache)  # of each bench
         self._runs: dict[str, LiveView] = {}
         self._version: defaultdict[str, int] = defaultdict(int)
@@ -88,6 +88,10 @@ class LiveHub:
     def runs(self) -> set[int]:
         """Numbers of all runs that are shown."""
         return {shown.run for shown in self._runs.values()}
+
+    def names_of_viewers(self, bench: str) -> list[str]:
+        """Who watches a bench, each once, in order of their names."""
+        return sorted(set(self.viewers[bench].values()))
 
     def changed(self, bench: str) -> None:
         """Something of a bench is to be shown anew."""

@@ -1,4 +1,4 @@
-"""What people gave: plans, controllers and models, each a row with its text."""
+"""What people gave: plans, controllers, models and bench files, each a row with its text; and versions."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from hil.api_schemas.upload import GivenKind
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now
 from hil.service.store._tables import GivenRow, put
+from hil.service.store._versions import add_version
 
 
 @dataclass(frozen=True)
@@ -46,11 +47,14 @@ class GivenStore:
         with self._transaction() as session:
             return _there(session, kind, name)
 
-    def give(self, kind: GivenKind, name: str, text: str, by: str, *, instead_of: str = "") -> bool:
+    def give(
+        self, kind: GivenKind, name: str, text: str, by: str, *, instead_of: str = "", based_on: str = ""
+    ) -> bool:
         """Keep a text; false if the name stands for another.
 
         Args:
             instead_of: SHA-256 of the text that may be replaced; '' for none. One that was removed may be.
+            based_on: name of the one that it was made from; '' if it is new.
         """
         sha256 = hashlib.sha256(text.encode("utf-8")).hexdigest()
         row: dict[str, object] = {"kind": kind, "name": name, "sha256": sha256, "text": text}
@@ -58,6 +62,8 @@ class GivenStore:
         free = or_(GivenRow.removed_at.is_not(None), GivenRow.sha256 == instead_of)
         with self._transaction() as session:
             if put(session, GivenRow, row, where=free):
+                if kind != "picture":  # stays what its name says, and is no text that is compared
+                    add_version(session, row, based_on)
                 return True
             there = _there(session, kind, name)
             return there is not None and not there.removed and there.sha256 == sha256

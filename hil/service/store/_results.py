@@ -1,4 +1,4 @@
-"""Studies and campaigns of all services of a database, and files of them that the archive has."""
+"""Studies, campaigns and given recordings of all services, and files of them that the archive has."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hil.service.store._files import KeptFile
 from hil.service.store._opening import now
 from hil.service.store._tables import NumberRow, ResultFileRow, ResultRow, put
 
-ResultKind = Literal["study", "campaign"]
+ResultKind = Literal["study", "campaign", "recording"]
 
 
 @dataclass(frozen=True)

@@ -122,15 +122,12 @@ class RunStore:
         with self._transaction() as session:
             return {(bench, state): count for bench, state, count in session.execute(chosen)}
 
-    def next_of(self, bench: str, requested_by: str | None) -> RunData | None:
-        """The run whose turn it is, if any; of one person only where the bench is theirs."""
+    def queued(self, bench: str, most: int) -> list[RunData]:
+        """Runs that may start on a bench, the next first."""
         chosen = select(RunRow).where(RunRow.bench == bench, RunRow.state == "queued")
-        if requested_by is not None:
-            chosen = chosen.where(RunRow.requested_by == requested_by)
-        chosen = chosen.order_by(RunRow.priority.desc(), RunRow.id).limit(1)
+        chosen = chosen.order_by(RunRow.priority.desc(), RunRow.id).limit(most)
         with self._transaction() as session:
-            row = session.scalars(chosen).first()
-            return None if row is None else run_data(row)
+            return [run_data(row) for row in session.scalars(chosen)]
 
     def take(self, run: int, service: str) -> TakenRun | None:
         """Mark a queued run as running, before anything of it is started.

@@ -9,7 +9,7 @@ from __future__ import annotations
 import datetime
 from typing import Any
 
-from sqlalchemy import BigInteger, ColumnElement, DateTime, Double, Index, String, Text
+from sqlalchemy import BigInteger, ColumnElement, DateTime, Double, Index, String, Text, UniqueConstraint
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import DeclarativeBase, Mapped, Session, mapped_column
 
@@ -159,7 +159,7 @@ class NumberRow(Base):
 
 
 class GivenRow(Base):
-    """A plan, controller or model that somebody gave; `sha256` of its text, hexadecimal."""
+    """A plan, controller, model or bench file that somebody gave; `sha256` of its text, hexadecimal."""
 
     __tablename__ = "given"
 
@@ -170,6 +170,22 @@ class GivenRow(Base):
     given_by: Mapped[str] = mapped_column(String(100))
     given_at: Mapped[datetime.datetime] = mapped_column(_MOMENT)
     removed_at: Mapped[datetime.datetime | None] = mapped_column(_MOMENT)
+
+
+class VersionRow(Base):
+    """A text that was given, kept when another takes its place; what was made of it is of its family."""
+
+    __tablename__ = "given_versions"
+    __table_args__ = (Index("given_versions_by_name", "kind", "name"),)
+
+    kind: Mapped[str] = mapped_column(String(12), primary_key=True)
+    family: Mapped[str] = mapped_column(String(64), primary_key=True)
+    number: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    name: Mapped[str] = mapped_column(String(64))
+    sha256: Mapped[str] = mapped_column(String(64))
+    text: Mapped[str] = mapped_column(Text)
+    given_by: Mapped[str] = mapped_column(String(100))
+    given_at: Mapped[datetime.datetime] = mapped_column(_MOMENT)
 
 
 class TokenRow(Base):
@@ -193,6 +209,30 @@ class SessionRow(Base):
 
     sha256: Mapped[str] = mapped_column(String(64), primary_key=True)
     token: Mapped[int]
+    until: Mapped[datetime.datetime] = mapped_column(_MOMENT)
+
+
+class PersonRow(Base):
+    """Somebody whom a provider has vouched for; `role` as their groups had it when they signed in last."""
+
+    __tablename__ = "people"
+    __table_args__ = (UniqueConstraint("issuer", "subject", name="people_by_subject"),)
+
+    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
+    issuer: Mapped[str] = mapped_column(String(300))
+    subject: Mapped[str] = mapped_column(String(255))
+    name: Mapped[str] = mapped_column(String(100), unique=True)
+    role: Mapped[str] = mapped_column(String(10))
+    signed_in_at: Mapped[datetime.datetime] = mapped_column(_MOMENT)
+
+
+class PersonSessionRow(Base):
+    """A page at which somebody has signed in; `sha256` of what is in its cookie, 256 random bits."""
+
+    __tablename__ = "person_sessions"
+
+    sha256: Mapped[str] = mapped_column(String(64), primary_key=True)
+    person: Mapped[int]
     until: Mapped[datetime.datetime] = mapped_column(_MOMENT)
 
 

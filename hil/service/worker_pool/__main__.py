@@ -36,6 +36,10 @@ TASKS = {
     "read_plan": "plan_reading:plan",
     "read_model": "plan_reading:model",
     "read_controller": "plan_reading:controller",
+    "recording_measured": "recording_curves:measured",
+    "recording_simulated": "recording_curves:simulated",
+    "read_file": "file_checking:file",
+    "read_recording": "recording_reading:recording",
     "schema": "plan_reading:schema",
     "campaign_examples": "_campaigning:examples",
 }

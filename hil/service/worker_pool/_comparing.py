@@ -7,16 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from hil.analysis.comparison import ComparedRun, aligned, compare, differences
 from hil.core.channels import TIME, unit_of
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
-from hil.service.worker_pool.drawn_numbers import number, numbers
+from hil.service.worker_pool.drawn_numbers import envelope, number, numbers
 from test_plans import rejudged
-
-Array = npt.NDArray[np.float64]
 
 _KEPT = 4  # recordings that stay read
 _MOST_DIFFERENCES = 200
@@ -100,7 +97,7 @@ def traces(
     finest_s = min(float(np.median(np.diff(time))) for time, _ in found)
     width_s = max((to_s - from_s) / most, finest_s)
     count = int(np.ceil((to_s - from_s) / width_s * (1 - 1e-9)))
-    envelopes = [_envelope(*stretch, from_s, width_s, count) for stretch in found]
+    envelopes = [envelope(*stretch, from_s, width_s, count) for stretch in found]
     return {
         "segment": segment,
         "channel": channel,
@@ -131,16 +128,3 @@ def _by_name(error: BadInputError, *runs: ComparedRun) -> BadInputError:
 
 def _common(one: ComparedRun, two: ComparedRun) -> list[str]:
     return [name for name in one.recording.channels if name != TIME and name in two.recording]
-
-
-def _envelope(time: Array, values: Array, from_s: float, width_s: float, count: int) -> tuple[Array, Array]:
-    """NaN where nothing was measured."""
-    bucket = np.floor((time - from_s) / width_s + 1e-6).astype(np.int64)
-    inside = (bucket >= 0) & (bucket < count)
-    bucket, values = bucket[inside], values[inside]
-    low, high = np.full(count, np.nan), np.full(count, np.nan)
-    if len(bucket):
-        starts = np.flatnonzero(np.diff(bucket, prepend=-1))
-        low[bucket[starts]] = np.fmin.reduceat(values, starts)
-        high[bucket[starts]] = np.fmax.reduceat(values, starts)
-    return low, high

@@ -44,7 +44,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     time_s = np.arange(8000) * 1e-3
     lines = rng.choice(np.arange(4, 120), 30, replace=False) / 8.0
     torque = 20 + sum(3 * np.sin(2 * np.pi * hz * time_s + rng.uniform(0, 6)) for hz in lines)
-    asked = {"time_s": np.asarray(time_s), "motor_torque_ref_nm": torque, "motor_speed_rad_s": 0 * torque}
+    asked = {"time_s": np.asarray(time_s), "motor_torque_ref_nm": torque}
     found = replay(load_model(model()), Recording(asked, tmp_path))
     rows = zip(
         time_s * 1e3,

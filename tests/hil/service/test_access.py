@@ -29,6 +29,13 @@ LEAST = {
     ("PUT", "/benches/{bench}/lease"): "operator",
     ("DELETE", "/benches/{bench}/lease"): "operator",
     ("GET", "/benches/{bench}/live"): "viewer",
+    ("GET", "/benches/{bench}/queue"): "viewer",
+    ("GET", "/benches/{bench}/reservations"): "viewer",
+    ("POST", "/benches/{bench}/reservations"): "operator",
+    ("DELETE", "/benches/{bench}/reservations/{reservation}"): "operator",
+    ("PUT", "/benches/{bench}/reservations/{reservation}/runs/{run}"): "operator",
+    ("GET", "/benches/{bench}/handovers"): "viewer",
+    ("POST", "/benches/{bench}/handovers"): "operator",
     ("DELETE", "/benches/{bench}/agent"): "engineer",
     ("GET", "/agents"): "viewer",
     ("PUT", "/agents/{agent}"): "agent",
@@ -100,9 +107,32 @@ LEAST = {
     ("DELETE", "/campaigns/{campaign}"): "engineer",
     ("POST", "/campaigns/{campaign}/resume"): "engineer",
     ("GET", "/campaigns/{campaign}/files/{name}"): "viewer",
+    ("GET", "/bench-files"): "viewer",
+    ("GET", "/bench-files/{bench}/text"): "viewer",
+    ("PUT", "/bench-files/{bench}"): "engineer",
+    ("DELETE", "/bench-files/{bench}"): "engineer",
+    ("PUT", "/bench-files/{bench}/service"): "engineer",
+    ("DELETE", "/bench-files/{bench}/service"): "engineer",
+    ("POST", "/file-checks"): "engineer",
+    ("GET", "/versions/{kind}/{name}"): "viewer",
+    ("GET", "/versions/{kind}/{name}/{number}/text"): "viewer",
+    ("GET", "/recordings"): "viewer",
+    ("GET", "/recordings/{recording}/curves"): "viewer",
+    ("GET", "/recordings/{recording}/simulation"): "engineer",
+    ("POST", "/recordings"): "engineer",
+    ("GET", "/recordings/{recording}"): "viewer",
+    ("DELETE", "/recordings/{recording}"): "engineer",
+    ("PUT", "/recordings/{recording}/content"): "engineer",
+    ("POST", "/recordings/{recording}/ending"): "engineer",
+    ("POST", "/recordings/{recording}/check"): "engineer",
+    ("GET", "/recordings/{recording}/files/{name}"): "viewer",
     ("GET", "/me"): "viewer",
     ("POST", "/session"): "",
     ("DELETE", "/session"): "",
+    ("GET", "/sign-in"): "",
+    ("GET", "/sign-in/return"): "",
+    ("GET", "/people"): "admin",
+    ("DELETE", "/people/{person}/sessions"): "admin",
     ("GET", "/tokens"): "admin",
     ("POST", "/tokens"): "admin",
     ("DELETE", "/tokens/{token}"): "admin",
@@ -111,7 +141,16 @@ LEAST = {
 #: Names of things that there are not: who may ask hears 404 or 422, nothing is changed.
 _NONE = {"bench": "none", "plan": "none", "run": "2000000000", "token": "2000000000", "name": "x"}
 _NONE |= {"agent": "0" * 32, "order": "0" * 16, "model": "none", "controller": "none"}
-_NONE |= {"study": "2000000000", "campaign": "2000000000", "note": "2000000000", "tag": "x", "kind": "plan"}
+_NONE |= {"recording": "2000000000", "number": "1"}
+_NONE |= {
+    "study": "2000000000",
+    "campaign": "2000000000",
+    "note": "2000000000",
+    "person": "2000000000",
+    "reservation": "2000000000",
+    "tag": "x",
+    "kind": "plan",
+}
 
 
 @pytest.fixture(scope="module")

@@ -15,17 +15,21 @@ from sqlalchemy import Engine, create_engine, text
 from sqlalchemy.exc import DBAPIError
 
 from hil.core.errors import BadInputError, BenchError
+from hil.service.durations import Durations
 from hil.service.store import (
     Base,
     BenchStore,
+    DurationStore,
     LayoutStore,
     LeaseStore,
     LogStore,
     NewRun,
+    ReservationStore,
     RunStore,
     TokenStore,
     open_database,
 )
+from hil.service.turns import Turns
 
 
 def wanted(
@@ -68,9 +72,9 @@ def test_a_run_is_taken_once_and_ended_once(engine: Engine) -> None:
 def test_a_hazardous_run_waits_for_approval(engine: Engine) -> None:
     runs = RunStore(engine)
     run, _ = runs.add(wanted(hazard="loud"), approved=False)
-    assert runs.next_of("sim", None) is None
+    assert runs.queued("sim", 1) == []
     assert runs.approve(run.id, "bert")
-    assert runs.next_of("sim", None).approved_by == "bert"
+    assert runs.queued("sim", 1)[0].approved_by == "bert"
     assert not runs.approve(run.id, "bert")
 
 
@@ -84,7 +88,8 @@ def test_each_bench_gets_its_runs_by_priority_and_then_as_they_came(asked: list[
     added = [(b, -p, runs.add(wanted(b, priority=p), approved=True)[0].id) for b, p in asked]
     for bench in "ab":
         order = []
-        while (run := runs.next_of(bench, None)) is not None:
+        while found := runs.queued(bench, 1):
+            [run] = found
             runs.take(run.id, "me")
             order.append(run.id)
         assert order == [number for b, _, number in sorted(added) if b == bench]
@@ -92,9 +97,15 @@ def test_each_bench_gets_its_runs_by_priority_and_then_as_they_came(asked: list[
 
 def test_only_its_holders_runs_come_while_a_bench_is_leased(engine: Engine) -> None:
     runs, leases = RunStore(engine), LeaseStore(engine)
-    runs.add(wanted(by="anna"), approved=True)
-    assert runs.next_of("sim", "bert") is None
-    assert runs.next_of("sim", "anna") is not None
+    turns = Turns(runs, leases, ReservationStore(engine), Durations(DurationStore(engine)))
+    run, _ = runs.add(wanted(by="anna"), approved=True)
+    assert turns.next_of("sim") == run
+    leases.take("sim", "bert", 60.0)
+    assert turns.next_of("sim") is None
+    leases.take("sim", "bert", -1.5)
+    leases.take("sim", "anna", 60.0)
+    assert turns.next_of("sim") == run
+    leases.take("sim", "anna", -1.5)
     assert leases.take("sim", "bert", 60.0).holder == "bert"
     assert leases.take("sim", "anna", 60.0) is None
     assert leases.take("sim", "bert", -1.5) is not None  # its time is over: no one has it

@@ -3,17 +3,17 @@
 import { t } from "./i18n/text.ts";
 
 export type Place =
-  | { view: "benches" | "runs" | "compare" | "trends" | "plans" | "models" | "controllers" | "design" | "identifications" | "diagnoses" | "campaigns" | "audit" | "settings" }
+  | { view: "benches" | "runs" | "compare" | "trends" | "plans" | "models" | "controllers" | "bench-files" | "design" | "recordings" | "identifications" | "diagnoses" | "campaigns" | "audit" | "settings" }
   | { view: "bench" | "panel"; bench: string }
   | { view: "wall"; bench: string | null } // null: all benches
   | { view: "run"; run: number }
-  | { view: "plan" | "model" | "controller"; name: string }
-  | { view: "identification" | "diagnosis" | "campaign"; id: number }
+  | { view: "plan" | "model" | "controller" | "bench-file"; name: string }
+  | { view: "recording" | "identification" | "diagnosis" | "campaign"; id: number }
   | { view: "missing"; path: string };
 
-const LISTS = ["benches", "runs", "compare", "trends", "plans", "models", "controllers", "design", "identifications", "diagnoses", "campaigns", "audit", "settings"] as const;
-const NAMED = { plans: "plan", models: "model", controllers: "controller" } as const;
-const NUMBERED = { identifications: "identification", diagnoses: "diagnosis", campaigns: "campaign" } as const;
+const LISTS = ["benches", "runs", "compare", "trends", "plans", "models", "controllers", "bench-files", "design", "recordings", "identifications", "diagnoses", "campaigns", "audit", "settings"] as const;
+const NAMED = { plans: "plan", models: "model", controllers: "controller", "bench-files": "bench-file" } as const;
+const NUMBERED = { recordings: "recording", identifications: "identification", diagnoses: "diagnosis", campaigns: "campaign" } as const;
 
 export function placeOf(path: string): Place {
   const missing: Place = { view: "missing", path };
@@ -66,6 +66,8 @@ export const to = {
   plan: (plan: string): string => `/plans/${name(plan)}`,
   model: (model: string): string => `/models/${name(model)}`,
   controller: (controller: string): string => `/controllers/${name(controller)}`,
+  benchFile: (file: string): string => `/bench-files/${name(file)}`,
+  recording: (id: number): string => `/recordings/${id}`,
   identification: (id: number): string => `/identifications/${id}`,
   diagnosis: (id: number): string => `/diagnoses/${id}`,
   campaign: (id: number): string => `/campaigns/${id}`,
@@ -73,8 +75,8 @@ export const to = {
 };
 
 const TITLES: Record<(typeof LISTS)[number], string> = {
-  benches: t("Benches"), runs: t("Runs"), compare: t("Compare runs"), trends: t("Trends"), plans: t("Plans"), models: t("Models"), controllers: t("Controllers"),
-  design: t("Design a controller"), identifications: t("Identifications"), diagnoses: t("Diagnoses"), campaigns: t("Campaigns"), audit: t("Audit log"), settings: t("Settings"),
+  benches: t("Benches"), runs: t("Runs"), compare: t("Compare runs"), trends: t("Trends"), plans: t("Plans"), models: t("Models"), controllers: t("Controllers"), "bench-files": t("Bench files"),
+  design: t("Design a controller"), recordings: t("Recordings"), identifications: t("Identifications"), diagnoses: t("Diagnoses"), campaigns: t("Campaigns"), audit: t("Audit log"), settings: t("Settings"),
 };
 
 export function titleOf(place: Place): string {
@@ -86,6 +88,8 @@ export function titleOf(place: Place): string {
     case "plan": return t("Plan {name}", { name: place.name });
     case "model": return t("Model {name}", { name: place.name });
     case "controller": return t("Controller {name}", { name: place.name });
+    case "bench-file": return t("Bench file {name}", { name: place.name });
+    case "recording": return t("Recording {number}", { number: place.id });
     case "identification": return t("Identification {number}", { number: place.id });
     case "diagnosis": return t("Diagnosis {number}", { number: place.id });
     case "campaign": return t("Campaign {number}", { number: place.id });

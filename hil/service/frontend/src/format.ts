@@ -45,6 +45,12 @@ export const whole = (value: number): string => formatOf({ maximumFractionDigits
 
 export const joined = (text: string, unit: string): string => (unit && unit !== "1" ? `${text}\u00a0${unit}` : text);
 
+// As disks and files are given: 1 MB is a million.
+export function bytes(count: number): string {
+  const [unit, size] = count >= 1e9 ? ["GB", 1e9] : count >= 1e6 ? ["MB", 1e6] : count >= 1e3 ? ["kB", 1e3] : ["B", 1] as const;
+  return joined(fixed(count / size, size === 1 || count / size >= 100 ? 0 : 1), unit);
+}
+
 export function duration(seconds: number): string {
   if (seconds < 60) return joined(fixed(seconds, seconds < 10 ? 1 : 0), "s");
   const minutes = Math.floor(seconds / 60);
@@ -63,6 +69,11 @@ export const clockTime = (ms: number): string => times.format(new Date(ms));
 
 export const moment = (iso: string): string => moments.format(new Date(iso));
 
+const days = new Intl.DateTimeFormat(LOCALE, { dateStyle: "medium", timeZone: "UTC" });
+
+// A day without a time, as it is in every zone.
+export const dayText = (day: string): string => days.format(new Date(`${day}T12:00:00Z`));
+
 const UNITS: Record<string, string> = { nm: "N m", rad_s: "rad/s", m_s: "m/s", s: "s", rad: "rad", degc: "°C", v: "V", a: "A", w: "W", hz: "Hz" };
 
 const CHANNELS: Record<string, string> = {
@@ -71,9 +82,15 @@ const CHANNELS: Record<string, string> = {
   driving_torque_ref: t("driving torque ref"), driving_torque_est: t("driving torque est"), dyno_torque_left: t("dyno torque left"), dyno_torque_right: t("dyno torque right"),
 };
 
+const endingOf = (name: string): string | undefined =>
+  Object.keys(UNITS).filter((one) => name.endsWith(`_${one}`)).sort((one, other) => other.length - one.length)[0];
+
+// The unit that a name ends with; "" if it ends with none.
+export const unitIn = (name: string): string => UNITS[endingOf(name) ?? ""] ?? "";
+
 // A channel's name without its unit, in words.
 export function wordsOf(channel: string): string {
-  const ending = Object.keys(UNITS).filter((one) => channel.endsWith(`_${one}`)).sort((one, other) => other.length - one.length)[0];
+  const ending = endingOf(channel);
   const bare = ending ? channel.slice(0, -ending.length - 1) : channel;
   return CHANNELS[bare] ?? bare.replaceAll("_", " ");
 }

@@ -10,6 +10,7 @@ export interface BenchState {
   running: Run | null;
   message: string;
   queue: Run[];
+  viewers: string[]; // names of those who have the bench open
 }
 
 // Lowest and highest values in buckets of `width_s` from `start_s`.

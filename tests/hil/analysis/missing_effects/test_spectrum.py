@@ -54,7 +54,7 @@ def test_halving_a_misfit_far_from_noise_gains_what_its_octaves_gain() -> None:
 def test_squares_of_weighed_windows_add_to_those_of_the_samples() -> None:
     errors = np.random.default_rng(2).normal(0.0, 1.0, (1, 20_000, 2))
     channels = np.array([True, False, True])
-    weighed = white(np.full(3, 0.5), RATE_HZ).weighed(errors, channels, RATE_HZ)
+    weighed = white(np.full(3, 0.5), RATE_HZ).weighed(errors, channels, RATE_HZ, 0.0)
     assert np.sum(weighed**2) == pytest.approx(np.sum(errors**2) / 0.25, rel=0.05)  # ends count half
 
 
@@ -78,6 +78,6 @@ def test_what_is_sent_back_is_the_slope_of_half_the_squares(blocks: int) -> None
     spectrum = powers_of([np.insert(errors, 1, np.nan, axis=1)], RATE_HZ, np.ones(3)).spectrum(
         np.full(3, 0.1)
     )
-    weighed = [spectrum.weighed(one[None], channels, RATE_HZ)[0] for one in (errors, change)]
-    back = spectrum.sent_back(errors, channels, RATE_HZ)
+    weighed = [spectrum.weighed(one[None], channels, RATE_HZ, 0.0)[0] for one in (errors, change)]
+    back = spectrum.sent_back(errors, channels, RATE_HZ, 0.0)
     assert np.sum(back * change) == pytest.approx(weighed[0] @ weighed[1])

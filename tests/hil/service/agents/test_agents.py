@@ -21,7 +21,16 @@ from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.service.agents.agents import Agents
 from hil.service.agents.remote_bench import AWAY_S
 from hil.service.agents.run_upload import RunUploads
-from hil.service.store import LeaseStore, NewRun, RunStore, open_database
+from hil.service.durations import Durations
+from hil.service.store import (
+    DurationStore,
+    LeaseStore,
+    NewRun,
+    ReservationStore,
+    RunStore,
+    open_database,
+)
+from hil.service.turns import Turns
 from test_plans import library_controllers
 from tests.hil.service import served as served_by
 from tests.hil.service.served import SHORT
@@ -35,6 +44,7 @@ class _There:
     def __init__(self, folder: Path, engine: Engine) -> None:
         self.folder, self.engine = folder, engine
         self.runs, self.leases = RunStore(engine), LeaseStore(engine)
+        self.reservations = ReservationStore(engine)
         self.agents = self.started()
         self.run_uploads = RunUploads("service", self.runs, folder)
 
@@ -43,7 +53,7 @@ class _There:
             self.engine,
             service,
             self.runs,
-            self.leases,
+            Turns(self.runs, self.leases, self.reservations, Durations(DurationStore(self.engine))),
             self.folder,
             lambda plan: self.folder / f"{plan}.yaml",
             lambda bench: None,

@@ -5,11 +5,11 @@ import test from "node:test";
 import type { Bench, Run } from "../../../../hil/service/frontend/src/api/types.ts";
 import type { BenchState } from "../../../../hil/service/frontend/src/live.ts";
 import { soundOf } from "../../../../hil/service/frontend/src/ui/sound.ts";
-import { leftOf, nextOf, wordOf } from "../../../../hil/service/frontend/src/views/bench-words.ts";
+import { aboutBench, leftOf, nextOf, wordOf } from "../../../../hil/service/frontend/src/views/bench-words.ts";
 
 const RUN = { id: 7, plan: "steps", title: "Steps", requested_by: "anna", doing: "tip_in", share: 0.25, state: "running", started_at: "2026-11-28T10:00:00Z" } as Run;
 const QUESTION = { text: "Is the cage shut?", answer_by: "2026-11-28T10:10:00Z", picture: "" };
-const stateOf = (state: Bench["state"], running: Run | null = null, queue: Run[] = []): BenchState => ({ bench: { name: "sim", state, lease: "" } as Bench, running, message: "", queue });
+const stateOf = (state: Bench["state"], running: Run | null = null, queue: Run[] = []): BenchState => ({ bench: { name: "sim", state, lease: "" } as Bench, running, message: "", queue, viewers: [] });
 
 test("a bench is said in one word", () => {
   const words = (state: BenchState) => wordOf(state.bench, state.running);
@@ -26,6 +26,18 @@ test("what comes next is the queue's first, unless somebody has to do something 
   assert.match(nextOf(stateOf("free", null, [{ ...waiting, state: "waiting_approval" }])), /when an engineer approves/);
   assert.match(nextOf(stateOf("running", { ...RUN, prompt: QUESTION }, [waiting])), /question is answered/);
   assert.match(nextOf(stateOf("emergency_stop", null, [waiting])), /engineer resets/);
+});
+
+test("a run that waits for somebody's reservation is not next while another may start", () => {
+  const held = { ...RUN, id: 8, state: "queued", waits_for: { who: "chen" } } as Run, free = { ...RUN, id: 9, state: "queued", requested_by: "ben" } as Run;
+  assert.equal(nextOf(stateOf("free", null, [held, free])), "Next: Steps, by ben, and 1 more");
+  assert.equal(nextOf(stateOf("free", null, [held])), "Next: Steps, by anna");
+});
+
+test("who has a bench by a reservation under way is named as who has it for an hour", () => {
+  const bench = stateOf("free").bench;
+  assert.equal(aboutBench({ ...bench, reserved_by: "chen" }, "Axle 1"), "Axle 1, reserved by chen");
+  assert.equal(aboutBench({ ...bench, lease: "anna" }, "Axle 1"), "Axle 1, reserved by anna");
 });
 
 test("what is left is as long as what was, by their shares", () => {

@@ -3,7 +3,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { againWith, valuesFrom } from "../../../../hil/service/frontend/src/views/plans/start-values.ts";
-import { lineAt, nameIn, renamed, START } from "../../../../hil/service/frontend/src/views/plans/plan-text.ts";
+import { lineAt } from "../../../../hil/service/frontend/src/editor/lines.ts";
+import { nameIn, renamed, START } from "../../../../hil/service/frontend/src/views/plans/plan-text.ts";
 
 test("the name is that which stands at the beginning of a line", () => {
   assert.equal(nameIn(START), "my_plan");

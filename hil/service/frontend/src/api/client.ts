@@ -17,14 +17,19 @@ export class Refused extends Error {
   }
 }
 
-type Body = object | string | undefined;
+type Body = object | string | Uint8Array<ArrayBuffer> | undefined;
 
-// A text or a file is sent as it is, anything else as JSON.
+function typeOf(body: object | string): string {
+  if (body instanceof Blob) return body.type;
+  return typeof body === "string" ? "text/plain" : body instanceof Uint8Array ? "application/octet-stream" : "application/json";
+}
+
+// A text, bytes or a file are sent as they are, anything else as JSON.
 async function fetched(method: string, path: string, body: Body, signal?: AbortSignal): Promise<string> {
   const options: RequestInit = { method, headers: {}, signal: signal ?? null };
   if (body !== undefined) {
-    const isFile = body instanceof Blob, asItIs = typeof body === "string" || isFile;
-    options.headers = { "content-type": isFile ? body.type : asItIs ? "text/plain" : "application/json" };
+    const asItIs = typeof body === "string" || body instanceof Uint8Array || body instanceof Blob;
+    options.headers = { "content-type": typeOf(body) };
     options.body = asItIs ? body : JSON.stringify(body);
   }
   let answer: Response;

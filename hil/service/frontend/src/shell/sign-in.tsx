@@ -1,28 +1,65 @@
-// A session of the page is opened with a token; the cookie is not the token, and scripts cannot read it.
+// A session of the page is opened by a provider where people sign in, or with a token; scripts cannot read its cookie.
 
 import type { JSX } from "preact";
-import { useEffect, useRef } from "preact/hooks";
-import { ask } from "../api/client.ts";
-import { attempt } from "../data.ts";
+import { useEffect, useRef, useState } from "preact/hooks";
+import { API, ask } from "../api/client.ts";
+import type { Health } from "../api/types.ts";
+import { attempt, useData } from "../data.ts";
 import { t } from "../i18n/text.ts";
 import { lookWho, session } from "../session.ts";
 
+// Why the provider's way back signed nobody in, as `?sign_in=` says it.
+const REASONS: Record<string, () => string> = {
+  late: () => t("The sign-in took too long, was done before, or began in another browser. Sign in once more."),
+  declined: () => t("The provider signed nobody in."),
+  token: () => t("What the provider sent is not valid. The log of the service says why."),
+  no_role: () => t("You are signed in at the provider, but none of your groups has a role here. An administrator assigns roles to groups."),
+  provider: () => t("The provider does not answer as it should. The log of the service says why."),
+};
+
 export function SignIn(): JSX.Element {
+  const health = useData<Health>("/health");
+  const [reason] = useState(takeReason);
+  const provider = health.data?.sign_in ?? "";
+  return (
+    <div class="card narrow">
+      <h1>{t("Sign in")}</h1>
+      {reason ? <p class="alarm" role="alert">{reason}</p> : null}
+      {provider ? <p><a class="button main" href={wayIn()}>{t("Sign in with {provider}", { provider })}</a></p> : null}
+      {provider ? <details><summary>{t("Sign in with a token")}</summary><TokenForm /></details> : health.loading ? null : <TokenForm first />}
+      <p class="quiet">{t("The emergency stop works without signing in.")}</p>
+    </div>
+  );
+}
+
+function TokenForm({ first = false }: { first?: boolean }): JSX.Element {
   const secret = useRef<HTMLInputElement>(null);
-  useEffect(() => secret.current?.focus(), []);
+  useEffect(() => { if (first) secret.current?.focus(); }, []);
   const submit = async (event: Event) => {
     event.preventDefault();
     const opened = await attempt(async () => { await ask("POST", "/session", { secret: secret.current?.value ?? "" }); return true; });
     if (opened) await lookWho();
   };
   return (
-    <form class="card narrow" onSubmit={(event) => void submit(event)}>
-      <h1>{t("Sign in")}</h1>
+    <form onSubmit={(event) => void submit(event)}>
       <label class="field">{t("Token")} <input ref={secret} type="password" autocomplete="current-password" required maxLength={200} /></label>
       <button type="submit" class="main">{t("Sign in")}</button>
-      <p class="quiet">{t("An administrator makes tokens. The emergency stop works without one.")}</p>
+      <p class="quiet">{t("An administrator makes tokens.")}</p>
     </form>
   );
+}
+
+// To the provider, and from there back to the view that was asked for.
+const wayIn = (): string => `${API}/sign-in?place=${encodeURIComponent(location.pathname + location.search)}`;
+
+// Shown once: the address that is loaded again or sent does not repeat it.
+function takeReason(): string {
+  const query = new URLSearchParams(location.search);
+  const reason = query.get("sign_in");
+  if (reason === null) return "";
+  query.delete("sign_in");
+  history.replaceState(null, "", location.pathname + (query.size ? `?${query}` : ""));
+  return REASONS[reason]?.() ?? "";
 }
 
 export async function signOut(): Promise<void> {

@@ -6,7 +6,8 @@ const KINDS: Record<string, string> = {
   pass: t("pass"), fail: t("fail"), error: t("error"), done: t("done"), undecided: t("undecided"),
   waiting_approval: t("waiting approval"), queued: t("queued"), waiting: t("waiting"), running: t("running"), stopping: t("stopping"), ended: t("ended"), interrupted: t("interrupted"), cancelled: t("cancelled"), failed: t("failed"),
   viewer: t("viewer"), operator: t("operator"), engineer: t("engineer"), admin: t("admin"), agent: t("agent"),
-  plan: t("plan"), model: t("model"), controller: t("controller"), diagnosis: t("diagnosis"), identification: t("identification"), transfer_function: t("transfer function"), physical: t("physical"),
+  arriving: t("arriving"), checking: t("checking"), ready: t("ready"), refused: t("refused"),
+  bench: t("bench"), plan: t("plan"), model: t("model"), controller: t("controller"), diagnosis: t("diagnosis"), identification: t("identification"), transfer_function: t("transfer function"), physical: t("physical"),
   linear: t("linear"), doubtful: t("doubtful"), stable: t("stable"), unstable: t("unstable"), segment: t("segment"), event: t("event"), hold: t("hold"),
 };
 

@@ -50,7 +50,7 @@ export function Actions({ state, answers = true }: { state: BenchState; answers?
         {running && may("operator") ? <button type="button" onClick={order("abort")}>{t("End the run")}</button> : null}
         {mayReset ? <button type="button" class="main" onClick={() => void attempt(() => post(`/benches/${name}/reset`))}>{t("It is safe: reset the emergency stop")}</button> : null}
         {bench.away_since && may("engineer") ? <button type="button" onClick={release}>{t("Release from its agent")}</button> : null}
-        {!bench.lease && may("operator") ? <button type="button" onClick={() => void attempt(() => ask("PUT", `/benches/${name}/lease`, { for_s: 3600 }))}>{t("Reserve for an hour")}</button> : null}
+        {!bench.lease && may("operator") && (!bench.reserved_by || bench.reserved_by === me.name) ? <button type="button" onClick={() => void attempt(() => ask("PUT", `/benches/${name}/lease`, { for_s: 3600 }))}>{t("Reserve for an hour")}</button> : null}
         {bench.lease && may("operator") && mayRelease ? <button type="button" onClick={() => void attempt(() => ask("DELETE", `/benches/${name}/lease`))}>{t("End the reservation")}</button> : null}
       </div>
     </>

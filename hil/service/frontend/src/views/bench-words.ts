@@ -24,9 +24,12 @@ export function wordOf(bench: Bench, run: Run | null): string {
   return run?.prompt ? t("Question") : isHeld(run) ? t("Held") : STATES.running;
 }
 
+// The first that may start as it is; one that waits for somebody where none may.
+export const nextIn = (queue: Run[]): Run | undefined => queue.find((run) => run.state === "queued" && !run.waits_for) ?? queue[0];
+
 // What happens next, by itself or because somebody does something.
 export function nextOf({ bench, running, queue }: BenchState): string {
-  const [first] = queue, more = queue.length - 1;
+  const first = nextIn(queue), more = queue.length - 1;
   if (bench.state === "emergency_stop") return running ? t("The run is being ended.") : t("When it is safe, an engineer resets the emergency stop.");
   if (running?.prompt) return t("The run goes on when the question is answered.");
   if (running && isHeld(running)) return t("The run is held and the torque is off. It goes on when the cause is gone, or with Resume.");
@@ -36,9 +39,12 @@ export function nextOf({ bench, running, queue }: BenchState): string {
   return more > 0 ? t("Next: {plan}, by {person}, and {count} more", values) : t("Next: {plan}, by {person}", values);
 }
 
+// Who has a bench for a while from now on, or by a reservation that is under way; '' for no one.
+export const holderOf = (bench: Bench): string => bench.lease || (bench.reserved_by ?? "");
+
 // Where a bench is and who has it, behind its title.
 export const aboutBench = (bench: Bench, title: string): string =>
-  [title, bench.simulated ? t("simulated") : "", bench.machine ? t("at {machine}", { machine: bench.machine }) : "", bench.lease ? t("reserved by {person}", { person: bench.lease }) : ""].filter(Boolean).join(", ");
+  [title, bench.simulated ? t("simulated") : "", bench.machine ? t("at {machine}", { machine: bench.machine }) : "", holderOf(bench) ? t("reserved by {person}", { person: holderOf(bench) }) : ""].filter(Boolean).join(", ");
 
 const LEAST_SHARE = 0.02; // of which the rest is estimated
 

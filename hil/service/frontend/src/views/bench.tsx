@@ -9,7 +9,7 @@ import { English } from "../i18n/english.tsx";
 import { t, tx } from "../i18n/text.ts";
 import { useLive } from "../live.ts";
 import { Board } from "../plot/board.tsx";
-import { useMay } from "../session.ts";
+import { useMay, useMe } from "../session.ts";
 import { benchInSight } from "../shell/stop.tsx";
 import { useStore } from "../store.ts";
 import { Badge, linkTo, Moment, Scroll, Section, verdictOf } from "../ui/parts.tsx";
@@ -17,6 +17,8 @@ import { Banner, LostNotice } from "./bench-banner.tsx";
 import { Criteria } from "./criteria.tsx";
 import { Queue } from "./queue.tsx";
 import { StartPlan } from "./plans/start-plan.tsx";
+import { Handovers } from "./team/handovers.tsx";
+import { Reservations } from "./team/reservations.tsx";
 import { Trends } from "./trends/trends.tsx";
 
 const AGAIN_MS = 2000;
@@ -25,7 +27,7 @@ const LATEST = 10;
 export function BenchView({ bench }: { bench: string }): JSX.Element {
   const live = useLive(bench);
   const state = useStore(live.state);
-  const may = useMay();
+  const may = useMay(), me = useMe();
   useEffect(() => { benchInSight.value = bench; }, [bench]);
   const running = state?.running ?? null;
   return (
@@ -33,14 +35,17 @@ export function BenchView({ bench }: { bench: string }): JSX.Element {
       <LostNotice />
       {state ? <Banner state={state} level={1} /> : <h1>{t("Bench {bench}", { bench })}</h1>}
       <p class="links"><a href={to.panel(bench)}>{t("Operator panel")}</a> <a href={`${to.list("runs")}?bench=${encodeURIComponent(bench)}`}>{t("All runs of this bench")}</a> <a href={to.wall(bench)}>{t("For the wall of a control room")}</a></p>
+      {state && me.tokens ? <p class="quiet">{t("On this page now: {names}", { names: state.viewers.join(", ") })}</p> : null}
       {running ? <Running key={running.id} run={running} /> : null}
       <div class="columns">
         <div>
           {running ? <LiveCriteria run={running.id} live={live} /> : null}
+          <Handovers bench={bench} />
           <Latest bench={bench} over={`${state?.bench.running ?? ""}`} />
         </div>
         <div>
           <Section title={t("Queue")} label="queue">{state ? <Queue runs={state.queue} /> : null}</Section>
+          <Reservations bench={bench} />
           {may("operator") ? <Section title={t("Start a plan")} label="start"><StartPlan bench={bench} /></Section> : null}
         </div>
       </div>

@@ -22,6 +22,7 @@ export function Benches(): JSX.Element {
           ? <ul class="cards">{all.map((bench) => <Card key={bench.name} bench={bench} />)}</ul>
           : <p>{tx("No bench yet. Agents bring them: {command}", { command: <code>hil bench agent --server URL</code> })}</p>}
       </Loaded>
+      <p class="links"><a href={to.list("bench-files")}>{t("Bench files")}</a></p>
     </>
   );
 }

@@ -13,6 +13,7 @@ import { play, soundOf, soundOn, turnSound } from "../ui/sound.ts";
 import { Actions, LostNotice } from "./bench-banner.tsx";
 import { aboutBench, leftOf, nextOf, titleOf, wordOf } from "./bench-words.ts";
 import { PromptCard, useNow } from "./panel-prompt.tsx";
+import { NewestHandover } from "./team/handovers.tsx";
 
 const SHOWN = ["motor_speed_rad_s", "vehicle_speed_m_s", "motor_torque_nm", "shaft_torque_nm"];
 const EVERY_MS = 250;
@@ -28,6 +29,7 @@ export function Panel({ bench }: { bench: string }): JSX.Element {
       {state ? <State state={state} /> : <h1>{t("Bench {bench}", { bench })}</h1>}
       <Dials live={live} state={state} />
       {state?.running ? <Decided live={live} run={state.running.id} /> : null}
+      <NewestHandover bench={bench} />
       <div class="row level">
         <SoundSwitch />
         <a href={to.bench(bench)}>{t("The bench with its plots, its queue and the form that starts a plan")}</a>

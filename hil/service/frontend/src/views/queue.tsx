@@ -9,6 +9,7 @@ import { English } from "../i18n/english.tsx";
 import { t, tx } from "../i18n/text.ts";
 import { useMay, useMe } from "../session.ts";
 import { linkTo } from "../ui/parts.tsx";
+import { Admit, WhenExpected } from "./team/expected.tsx";
 
 export function Queue({ runs }: { runs: Run[] }): JSX.Element {
   if (!runs.length) return <p class="quiet">{t("The queue is empty.")}</p>;
@@ -24,8 +25,10 @@ function Waiting({ run }: { run: Run }): JSX.Element {
         {tx("<a>{run}</a>: {plan}, by {person}", { a: linkTo(to.run(run.id)), run: run.id, plan: run.title || run.plan, person: run.requested_by })}
         {run.state === "waiting_approval" ? <span class="reason">{t("waits for approval: {hazard}", { hazard: run.hazard })}</span> : null}
         {run.reason ? <span class="reason"><English>{run.reason}</English></span> : null}
+        <WhenExpected run={run} />
       </span>
       <span class="buttons">
+        <Admit run={run} />
         {run.state === "waiting_approval" && may("engineer") && run.requested_by !== me.name
           ? <button type="button" aria-label={t("Approve run {run}", { run: run.id })} onClick={() => void attempt(() => post(`/runs/${run.id}/approve`))}>{t("Approve")}</button> : null}
         {may("engineer") ? <button type="button" aria-label={t("Run {run} sooner", { run: run.id })} onClick={sooner}>{t("Sooner")}</button> : null}

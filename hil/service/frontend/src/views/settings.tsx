@@ -12,6 +12,7 @@ import { t, tx } from "../i18n/text.ts";
 import { useMay, useMe } from "../session.ts";
 import { useStore } from "../store.ts";
 import { chooseTheme, theme, THEME_NAMES, THEMES } from "../theme.ts";
+import { People } from "./team/people.tsx";
 import { kindInWords } from "../ui/kinds.ts";
 import { Facts, Heading, Loaded, Moment, Scroll, Section } from "../ui/parts.tsx";
 
@@ -24,6 +25,7 @@ export function Settings(): JSX.Element {
       <Section title={t("Colours")} label="colours"><Colours /></Section>
       <Section title={t("Service")} label="service"><ServiceState /></Section>
       <Section title={t("Agents")} label="agents"><Agents /></Section>
+      {may("admin") ? <People /> : null}
       {may("admin") && me.tokens ? <Section title={t("Tokens")} label="tokens"><Tokens /></Section> : null}
       {may("admin") && !me.tokens ? <p class="quiet">{tx("This service asks for no tokens. The first one is made on its machine: {command}", { command: <code>hil serve --add-token NAME=admin</code> })}</p> : null}
     </>

@@ -22,27 +22,23 @@ const AGAIN_MS = 2000;
 const PATIENCE_MS = 5000;
 const LATEST = 6;
 
-// One request for all benches, and two for each.
+// One request for all benches, and three for each.
 async function look(only: string | null): Promise<Pick<Heard, "shown" | "missing">> {
   const signal = AbortSignal.timeout(PATIENCE_MS);
   const benches = (await get<Bench[]>("/benches", signal)).filter((bench) => only === null || bench.name === only);
   const shown = await Promise.all(benches.map(async (bench): Promise<Shown> => {
-    const [running, found] = await Promise.all([
+    const [running, queue, found] = await Promise.all([
       bench.running ? get<Run>(`/runs/${bench.running}`, signal) : null,
+      get<Run[]>(`/benches/${encodeURIComponent(bench.name)}/queue`, signal),
       get<FoundRuns>(`/run-list?${queryOf(bench.name)}`, signal),
     ]);
-    const runs = found.runs.map(({ run }) => run);
-    return {
-      bench, running,
-      queue: runs.filter((run) => run.state === "queued" || run.state === "waiting_approval").sort((one, other) => other.priority - one.priority || one.id - other.id),
-      latest: runs.filter((run) => run.state === "ended" || run.state === "interrupted").slice(0, LATEST),
-    };
+    return { bench, running, queue, latest: found.runs.map(({ run }) => run) };
   }));
   return { shown, missing: only !== null && benches.length === 0 };
 }
 
 const queryOf = (bench: string): URLSearchParams =>
-  new URLSearchParams([["bench", bench], ["most", "20"], ...["queued", "waiting_approval", "ended", "interrupted"].map((state) => ["state", state])] as string[][]);
+  new URLSearchParams([["bench", bench], ["most", String(LATEST)], ...["ended", "interrupted"].map((state) => ["state", state])] as string[][]);
 
 export function useWall(only: string | null): Heard {
   const [heard, setHeard] = useState<Heard>({ shown: [], missing: false, atMs: 0 });

@@ -8,7 +8,7 @@ import { English } from "../i18n/english.tsx";
 import { t } from "../i18n/text.ts";
 import { showAs } from "../theme.ts";
 import { Badge, verdictOf } from "../ui/parts.tsx";
-import { leftOf, titleOf, wordOf } from "./bench-words.ts";
+import { holderOf, leftOf, nextIn, titleOf, wordOf } from "./bench-words.ts";
 import { useNow } from "./panel-prompt.tsx";
 import { useWall, type Shown } from "./wall-data.ts";
 
@@ -38,7 +38,7 @@ const useBegan = (): number => useState(() => performance.now())[0];
 
 function Card({ of: { bench, running, queue, latest }, nowMs, alone }: { of: Shown; nowMs: number; alone: boolean }): JSX.Element {
   const left = running ? leftOf(running, nowMs) : null;
-  const has = running?.requested_by || bench.lease;
+  const next = nextIn(queue), has = running?.requested_by || holderOf(bench);
   return (
     <li class={`bench ${running?.prompt ? "in_use" : bench.state}`}>
       <h2><a href={to.wall(bench.name)}>{bench.name}</a> {bench.title ? <small>{bench.title}</small> : null}</h2>
@@ -51,7 +51,7 @@ function Card({ of: { bench, running, queue, latest }, nowMs, alone }: { of: Sho
           <p>{left === null ? <English>{running.doing}</English> : t("about {time} left", { time: roughly(left) })}</p>
         </>
       ) : bench.why ? <p><English>{bench.why}</English></p> : null}
-      {queue[0] ? <p class="quiet">{queue.length > 1 ? t("Next: {plan}, by {person}, and {count} more", { plan: titleOf(queue[0]), person: queue[0].requested_by, count: queue.length - 1 }) : t("Next: {plan}, by {person}", { plan: titleOf(queue[0]), person: queue[0].requested_by })}</p> : null}
+      {next ? <p class="quiet">{queue.length > 1 ? t("Next: {plan}, by {person}, and {count} more", { plan: titleOf(next), person: next.requested_by, count: queue.length - 1 }) : t("Next: {plan}, by {person}", { plan: titleOf(next), person: next.requested_by })}</p> : null}
       <ol aria-label={t("Last verdicts")}>
         {latest.slice(0, alone ? VERDICTS.one : VERDICTS.all).map((run) => (
           <li key={run.id}><Badge kind={verdictOf(run)} /> <span>{titleOf(run)}</span> {run.ended_at ? <time dateTime={run.ended_at} title={run.ended_at}>{moment(run.ended_at)}</time> : null}</li>

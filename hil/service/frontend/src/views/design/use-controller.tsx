@@ -16,9 +16,10 @@ interface Loading {
   files: string[];
 }
 
-export function UseController({ controller: given }: { controller: string }): JSX.Element {
-  const [controllers, setControllers] = useState<string[]>([]), [plans, setPlans] = useState<Loading[]>([]);
-  const [controller, setController] = useState(given), [plan, setPlan] = useState(""), [file, setFile] = useState(""), [name, setName] = useState("");
+// Of the page of a plan, that plan; what its run is started with goes on to the copy.
+export function UseController({ controller: given = "", plan: first = "", query = "" }: { controller?: string; plan?: string; query?: string }): JSX.Element {
+  const [controllers, setControllers] = useState<string[]>([]), [plans, setPlans] = useState<Loading[] | null>(null);
+  const [controller, setController] = useState(given), [plan, setPlan] = useState(first), [file, setFile] = useState(""), [name, setName] = useState("");
   useEffect(() => {
     const control = new AbortController();
     void attempt(async () => {
@@ -27,18 +28,19 @@ export function UseController({ controller: given }: { controller: string }): JS
     });
     return () => control.abort();
   }, []);
-  const of = plans.find((one) => one.plan.name === plan) ?? plans[0];
+  const of = plans?.find((one) => one.plan.name === plan) ?? (first ? undefined : plans?.[0]);
   const inPlace = of?.files.find((one) => one === file) ?? of?.files[0] ?? "", chosen = controller || controllers[0] || "";
   const make = async (event: Event) => {
     event.preventDefault();
     if (!of) return;
     const made = await attempt(() => post<Plan>(`/plans/${encodeURIComponent(of.plan.name)}/copies`, { name: name || `${of.plan.name}-${chosen}`.slice(0, 64), controllers: { [inPlace]: chosen } }));
-    if (made) go(to.plan(made.name));
+    if (made) go(to.plan(made.name) + (query ? `?${query}` : ""));
   };
+  if (first && plans && !plans.some((one) => one.plan.name === first)) return <p class="quiet">{t("This plan loads no controller by a file.")}</p>;
   return (
     <form class="row" onSubmit={(event) => void make(event)}>
       <label class="field">{t("Controller")}<select value={chosen} onChange={(event) => setController(event.currentTarget.value)}>{controllers.map((one) => <option key={one}>{one}</option>)}</select></label>
-      <label class="field">{t("in the plan")}<select value={of?.plan.name ?? ""} onChange={(event) => setPlan(event.currentTarget.value)}>{plans.map((one) => <option key={one.plan.name} value={one.plan.name}>{one.plan.title || one.plan.name}</option>)}</select></label>
+      <label class="field">{t("in the plan")}<select value={of?.plan.name ?? ""} onChange={(event) => setPlan(event.currentTarget.value)}>{(plans ?? []).map((one) => <option key={one.plan.name} value={one.plan.name}>{one.plan.title || one.plan.name}</option>)}</select></label>
       <label class="field">{t("in place of")}<select value={inPlace} onChange={(event) => setFile(event.currentTarget.value)}>{(of?.files ?? []).map((one) => <option key={one}>{one}</option>)}</select></label>
       <NameField label={t("as plan")} value={name} onChange={setName} optional placeholder={of && chosen ? `${of.plan.name}-${chosen}`.slice(0, 64) : ""} />
       <button type="submit" disabled={!of || !chosen}>{t("Make the plan")}</button>

@@ -19,10 +19,3 @@ export const nameIn = (text: string): string | null => NAME.exec(text)?.[1] ?? n
 
 // A copy of a plan that is built in has a name of its own.
 export const renamed = (text: string, name: string): string => text.replace(NAME, `name: ${name}`);
-
-// From where to where a line goes, counted from 1; the last one where there is none of that number.
-export function lineAt(text: string, line: number): [number, number] {
-  const lines = text.split("\n"), at = Math.min(Math.max(1, line), lines.length) - 1;
-  const start = lines.slice(0, at).reduce((sum, one) => sum + one.length + 1, 0);
-  return [start, start + (lines[at] ?? "").length];
-}

@@ -6,16 +6,18 @@ import { ask, getText } from "../../api/client.ts";
 import type { Plan } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
+import { Versions, versionPath } from "../../editor/versions.tsx";
 import { limitText } from "../../format.ts";
 import { t } from "../../i18n/text.ts";
 import { go, useQuery } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { Heading, Loaded, Scroll, Section } from "../../ui/parts.tsx";
+import { UseController } from "../design/use-controller.tsx";
 import { EditPlan, PlanEditor } from "./plan-editor.tsx";
 import { renamed, START } from "./plan-text.ts";
 import { valuesFrom } from "./start-values.ts";
 import { StartPlan } from "./start-plan.tsx";
-import { GiveFile } from "../give-file.tsx";
+import { GiveFile } from "../given/give-file.tsx";
 import { Pictures } from "./pictures.tsx";
 
 export function Plans(): JSX.Element {
@@ -42,7 +44,7 @@ export function Plans(): JSX.Element {
         )}
       </Loaded>
       {may("engineer") ? <p><a href={`${to.list("plans")}?write=new`}>{t("Write a plan")}</a></p> : null}
-      {may("engineer") ? <Section title={t("Give a plan")} label="give"><GiveFile kind="plan" path="/plans" ending=".yaml" onGiven={(name) => go(to.plan(name))} /></Section> : null}
+      {may("engineer") ? <Section title={t("Give a plan")} label="give"><GiveFile submit={t("Give the plan")} path="/plans" ending=".yaml" onGiven={(name) => go(to.plan(name))} /></Section> : null}
       {may("engineer") ? <Section title={t("Pictures for questions")} label="pictures"><Pictures /></Section> : null}
     </>
   );
@@ -54,14 +56,14 @@ export function PlanView({ name }: { name: string }): JSX.Element {
 }
 
 function Found({ plan }: { plan: Plan }): JSX.Element {
-  const may = useMay(), [query] = useQuery();
+  const may = useMay(), [query] = useQuery(), textPath = `/plans/${encodeURIComponent(plan.name)}/text`, version = Number(query.get("version")) || null;
   const remove = async () => {
     if (!confirm(t("Remove the plan {name}? Its runs stay.", { name: plan.name }))) return;
     if (await attempt(async () => { await ask("DELETE", `/plans/${encodeURIComponent(plan.name)}`); return true; })) go(to.list("plans"));
   };
   const variables = Object.entries(plan.variables);
   const edited = (text: string) => (plan.built_in ? renamed(text, `${plan.name}_copy`) : text);
-  if (query.get("write") === "on" && may("engineer")) return <><Heading kind={<a href={to.plan(plan.name)}>{plan.name}</a>}>{plan.built_in ? t("A copy of this plan") : t("Edit the plan")}</Heading><EditPlan name={plan.name} builtIn={plan.built_in} copied={edited} /></>;
+  if (query.get("write") === "on" && may("engineer")) return <><Heading kind={<a href={to.plan(plan.name)}>{plan.name}</a>}>{plan.built_in ? t("A copy of this plan") : t("Edit the plan")}</Heading><EditPlan name={plan.name} path={version === null ? textPath : versionPath("plan", plan.name, version)} builtIn={plan.built_in} copied={edited} /></>;
   return (
     <>
       <Heading kind={plan.built_in ? t("Built-in plan {name}", { name: plan.name }) : t("Given plan {name}", { name: plan.name })}>{plan.title || plan.name}</Heading>
@@ -78,10 +80,16 @@ function Found({ plan }: { plan: Plan }): JSX.Element {
               </table></Scroll>
             </Section>
           ) : null}
-          <Section title={t("Text")} label="text"><FileText path={`/plans/${encodeURIComponent(plan.name)}/text`} label={t("Plan {name}", { name: plan.name })} /></Section>
+          <Section title={t("Text")} label="text"><FileText path={textPath} label={t("Plan {name}", { name: plan.name })} /></Section>
+          <Versions kind="plan" name={plan.name} textPath={textPath} editPath={`${to.plan(plan.name)}?write=on`} />
           {may("engineer") && !plan.built_in ? <div class="row"><button type="button" onClick={() => void remove()}>{t("Remove the plan")}</button></div> : null}
         </div>
-        {may("operator") ? <div><Section title={t("Start it")} label="start"><StartPlan plan={plan.name} from={valuesFrom(query)} /></Section></div> : null}
+        {may("operator") ? (
+          <div>
+            <Section title={t("Start it")} label="start"><StartPlan plan={plan.name} from={valuesFrom(query)} /></Section>
+            {may("engineer") ? <Section title={t("With another controller")} label="controller"><p class="quiet">{t("A copy of the plan loads it; the copy is started with the same values.")}</p><UseController plan={plan.name} query={query.toString()} /></Section> : null}
+          </div>
+        ) : null}
       </div>
     </>
   );

@@ -91,7 +91,7 @@ function RunActions({ run }: { run: Run }): JSX.Element | null {
   return (
     <div class="row level">
       {may("operator") && OVER.includes(run.state) ? <button type="button" onClick={() => void again()}>{t("Again")}</button> : null}
-      {may("operator") && OVER.includes(run.state) ? <a href={againWith(run)}>{t("Again with other values")}</a> : null}
+      {may("operator") && OVER.includes(run.state) ? <a href={againWith(run)}>{t("Again with other values, bench or controller")}</a> : null}
       {may("operator") && waits ? <button type="button" onClick={() => void attempt(() => post(`/runs/${run.id}/abort`))}>{t("Cancel")}</button> : null}
       {run.state === "waiting_approval" && may("engineer") ? <button type="button" class="main" onClick={() => void attempt(() => post(`/runs/${run.id}/approve`))}>{t("Approve")}</button> : null}
       {recorded && may("engineer") ? <a href={`${to.list("diagnoses")}?runs=${run.id}`}>{t("Diagnose")}</a> : null}

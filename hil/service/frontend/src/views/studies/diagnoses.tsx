@@ -14,7 +14,7 @@ import { runsFrom } from "./chosen-runs.ts";
 import { Alternatives, Effects } from "./effects.tsx";
 import { ErrorMap, Gaps } from "./gaps.tsx";
 import { KeepModel } from "./keep-model.tsx";
-import { ChooseRuns, StudyList, StudyPage } from "./study-parts.tsx";
+import { ChooseRecordings, ChooseRuns, StudyList, StudyPage } from "./study-parts.tsx";
 
 export function Diagnoses(): JSX.Element {
   const may = useMay();
@@ -31,11 +31,12 @@ function Begin(): JSX.Element {
   const [query] = useQuery();
   const models = (useData<Model[]>("/models").data ?? []).filter((one) => one.kind !== "transfer_function");
   const [runs, setRuns] = useState(() => runsFrom(query.get("runs"))), [holdout, setHoldout] = useState<number[]>([]);
+  const [recordings, setRecordings] = useState(() => runsFrom(query.get("recordings"))), [heldRecordings, setHeldRecordings] = useState<number[]>([]);
   const [chosen, setModel] = useState(query.get("model") ?? ""), [minutes, setMinutes] = useState("10");
   const model = chosen || models[0]?.name || "";
   const begin = async (event: Event) => {
     event.preventDefault();
-    const study = await attempt(() => post<Study>("/diagnoses", { model, runs, holdout, at_most_min: Number(minutes) }));
+    const study = await attempt(() => post<Study>("/diagnoses", { model, runs, recordings, holdout, holdout_recordings: heldRecordings, at_most_min: Number(minutes) }));
     if (study) go(to.diagnosis(study.id));
   };
   return (
@@ -48,8 +49,10 @@ function Begin(): JSX.Element {
       <div class="halves">
         <ChooseRuns legend={t("Runs to compare with the model")} chosen={runs} onChange={setRuns} without={holdout} />
         <ChooseRuns legend={t("Runs held out, for validation")} chosen={holdout} onChange={setHoldout} without={runs} />
+        <ChooseRecordings legend={t("Given recordings to compare with the model")} chosen={recordings} onChange={setRecordings} without={heldRecordings} />
+        <ChooseRecordings legend={t("Given recordings held out, for validation")} chosen={heldRecordings} onChange={setHeldRecordings} without={recordings} />
       </div>
-      <button type="submit" class="main" disabled={!runs.length || !model}>{t("Diagnose")}</button>
+      <button type="submit" class="main" disabled={!(runs.length || recordings.length) || !model}>{t("Diagnose")}</button>
     </form>
   );
 }

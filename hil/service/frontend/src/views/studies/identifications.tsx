@@ -16,7 +16,7 @@ import { useMay } from "../../session.ts";
 import { Badge, Heading, inWords, Loaded, Scroll, Section } from "../../ui/parts.tsx";
 import { KeepModel } from "./keep-model.tsx";
 import { Chains, nameOfOrder, Orders, type Order } from "./orders.tsx";
-import { ChooseRuns, StudyList, StudyPage } from "./study-parts.tsx";
+import { ChooseRecordings, ChooseRuns, StudyList, StudyPage } from "./study-parts.tsx";
 import { runsFrom } from "./chosen-runs.ts";
 
 export function Identifications(): JSX.Element {
@@ -32,17 +32,18 @@ export function Identifications(): JSX.Element {
 
 function Begin(): JSX.Element {
   const [query] = useQuery();
-  const [runs, setRuns] = useState(() => runsFrom(query.get("runs")));
+  const [runs, setRuns] = useState(() => runsFrom(query.get("runs"))), [recordings, setRecordings] = useState(() => runsFrom(query.get("recordings")));
   const begin = async (event: Event) => {
     event.preventDefault();
-    const study = await attempt(() => post<Study>("/identifications", { runs }));
+    const study = await attempt(() => post<Study>("/identifications", { runs, recordings }));
     if (study) go(to.identification(study.id));
   };
   return (
     <form class="card" onSubmit={(event) => void begin(event)}>
       <h2>{t("Identify a model")}</h2>
       <ChooseRuns legend={t("Runs with chirps or multisines")} chosen={runs} onChange={setRuns} />
-      <button type="submit" class="main" disabled={!runs.length}>{t("Identify")}</button>
+      <ChooseRecordings legend={t("Given recordings with chirps or multisines")} chosen={recordings} onChange={setRecordings} />
+      <button type="submit" class="main" disabled={!runs.length && !recordings.length}>{t("Identify")}</button>
     </form>
   );
 }

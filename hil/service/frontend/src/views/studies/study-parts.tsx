@@ -11,6 +11,7 @@ import { go } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { kindInWords } from "../../ui/kinds.ts";
 import { Badge, Facts, FileLink, Heading, Loaded, Moment, Scroll, Section } from "../../ui/parts.tsx";
+import { useRecordings } from "../recordings/recordings.tsx";
 
 const AGAIN_MS = 2000;
 const MOST_RUNS = 12;
@@ -27,7 +28,7 @@ export function StudyList({ kind }: { kind: Kind }): JSX.Element {
       {(all) => all.length ? (
         <Scroll label={isDiagnosis ? t("Diagnoses") : t("Identifications")}><table>
           <thead><tr><th scope="col" class="number">{t("number")}</th><th scope="col">{t("state")}</th>{isDiagnosis ? <th scope="col">{t("model")}</th> : null}<th scope="col">{t("runs")}</th><th scope="col">{t("asked for")}</th><th scope="col">{t("by")}</th></tr></thead>
-          <tbody>{all.map((one) => <tr key={one.id}><td class="number"><a href={addressOf(one)}>{one.id}</a></td><td><Badge kind={one.state} />{one.reason ? <span class="reason"><English>{one.reason}</English></span> : null}</td>{isDiagnosis ? <td>{one.model}</td> : null}<td><RunLinks runs={one.runs} /></td><td><Moment at={one.asked_at} /></td><td>{one.requested_by}</td></tr>)}</tbody>
+          <tbody>{all.map((one) => <tr key={one.id}><td class="number"><a href={addressOf(one)}>{one.id}</a></td><td><Badge kind={one.state} />{one.reason ? <span class="reason"><English>{one.reason}</English></span> : null}</td>{isDiagnosis ? <td>{one.model}</td> : null}<td><RunLinks runs={one.runs} /><RecordingLinks recordings={one.recordings ?? []} /></td><td><Moment at={one.asked_at} /></td><td>{one.requested_by}</td></tr>)}</tbody>
         </table></Scroll>
       ) : <p class="quiet">{t("None yet.")}</p>}
     </Loaded>
@@ -35,6 +36,8 @@ export function StudyList({ kind }: { kind: Kind }): JSX.Element {
 }
 
 const RunLinks = ({ runs }: { runs: number[] }): JSX.Element => <span class="links">{runs.map((run) => <a key={run} href={to.run(run)}>{run}</a>)}</span>;
+
+const RecordingLinks = ({ recordings }: { recordings: number[] }): JSX.Element => <span class="links">{recordings.map((one) => <a key={one} href={to.recording(one)}>{t("recording {number}", { number: one })}</a>)}</span>;
 
 // The newest runs with recordings, and those that the address names, to be ticked.
 export function ChooseRuns({ legend, chosen, onChange, without = [] }: { legend: string; chosen: number[]; onChange: (runs: number[]) => void; without?: number[] }): JSX.Element {
@@ -51,6 +54,19 @@ export function ChooseRuns({ legend, chosen, onChange, without = [] }: { legend:
       {others.map((id) => tick(id, t("run {run}", { run: id })))}
       {offered.map((run) => tick(run.id, t("run {run}: {plan}, {bench}", { run: run.id, plan: run.title || run.plan, bench: run.bench })))}
       {all.data && !offered.length && !others.length ? <p class="quiet">{t("There is no recording yet.")}</p> : null}
+    </fieldset>
+  );
+}
+
+// Recordings that people gave and that are ready, to be ticked.
+export function ChooseRecordings({ legend, chosen, onChange, without = [] }: { legend: string; chosen: number[]; onChange: (recordings: number[]) => void; without?: number[] }): JSX.Element {
+  const all = useRecordings();
+  const offered = (all.data ?? []).filter((one) => one.state === "ready" && !without.includes(one.id));
+  const turn = (id: number, on: boolean) => onChange(on ? [...chosen, id] : chosen.filter((one) => one !== id));
+  return (
+    <fieldset class="ticks"><legend>{legend}</legend>
+      {offered.map((one) => <label class="tick" key={one.id}><input type="checkbox" checked={chosen.includes(one.id)} onChange={(event) => turn(one.id, event.currentTarget.checked)} />{t("recording {number}: {name}", { number: one.id, name: one.name })}</label>)}
+      {all.data && !offered.length ? <p class="quiet"><a href={to.list("recordings")}>{t("Give a recording")}</a></p> : null}
     </fieldset>
   );
 }
@@ -98,7 +114,8 @@ export const textOf = (study: Study, name: string): Promise<string> => getText(`
 
 function StudyFacts({ study }: { study: Study }): JSX.Element {
   const facts: ([string, ComponentChildren] | null)[] = [
-    [t("runs"), <RunLinks runs={study.runs} />],
+    study.runs.length ? [t("runs"), <RunLinks runs={study.runs} />] : null,
+    study.recordings?.length ? [t("recordings"), <RecordingLinks recordings={study.recordings} />] : null,
     study.model ? [t("model"), <a href={to.model(study.model)}>{study.model}</a>] : null,
     [t("asked for by"), study.requested_by], [t("asked for"), <Moment at={study.asked_at} />],
     study.ended_at ? [t("ended"), <Moment at={study.ended_at} />] : null,

@@ -1,0 +1,105 @@
+"""Where a replay begins: what first samples show, and within their noise what the next seconds tell.
+
+A speed read from twenty samples is off by a quarter of their noise. Without drag a replay keeps that offset
+to its end, which no model is to blame for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+SECONDS = 4.0
+"""Of a recording from its beginning, by which its start is found."""
+_SAMPLES = (20, 10, 5)  # at first, as many as show no motion beyond their noise
+_VALUES = 10.0  # independent ones that a misfit holds: one an octave
+_DIGITS = 1e-6  # of a channel's rms: its noise at least
+_ROUNDS = 2  # outputs change nearly linearly with a start
+_STEP = 1e-3  # of a channel's rms, for derivatives
+
+
+def beginning(values: Array) -> tuple[float, float]:
+    """What a channel shows at first, and how far that may be off; NaN where it was not recorded.
+
+    That is its standard error and what it moves by meanwhile.
+    """
+    if not np.isfinite(values[0]):
+        return float("nan"), float("nan")
+    for count in _SAMPLES:
+        head = values[:count]
+        noise = white_noise(head)
+        if np.std(head) <= 1.5 * noise:
+            early, late = np.mean(head[: count // 2]), np.mean(head[count // 2 :])
+            return float(np.mean(head)), float(noise / np.sqrt(len(head)) + abs(late - early))
+    return float(values[0]), white_noise(values[: _SAMPLES[0]])
+
+
+def white_noise(values: Array) -> float:
+    """Standard deviation of noise, by second differences: motion is straight from sample to sample."""
+    bent = np.abs(np.diff(values, 2))
+    return float(np.median(bent) / (0.6745 * np.sqrt(6.0))) if len(bent) else 0.0
+
+
+def settled(
+    first: Array, errors: Array, carried: Array, measured: Array, show: Callable[[Array], Array]
+) -> Array:
+    """Motor speed, wheel speed (rad/s) and shaft torque (N m) that suit the beginning of a recording best.
+
+    What a model gets wrong is no noise: it holds few independent values, so that the first samples count for
+    more. A start does not hide what a model lacks.
+
+    Args:
+        first: (3,), what first samples show; a channel that was not recorded follows from others.
+        errors: (3,), standard errors of that.
+        carried: (3,), what a torque that nobody recorded may have added before the first sample.
+        measured: n x 3, NaN where a channel was not recorded.
+        show: gives the outputs (n x 3) from a start.
+    """
+    unsure = np.hypot(errors, carried)
+    there = np.isfinite(measured[0])
+    if not there.any() or not np.any(unsure > 0.0):
+        return first
+    size = np.sqrt(np.mean(np.where(there, measured, 0.0) ** 2, axis=0))
+    noise = np.nan_to_num(np.array([white_noise(one) for one in measured.T]))
+    noise = np.maximum(noise, _DIGITS * np.where(size > 0.0, size, 1.0))
+    steps = _STEP * np.where(size > 0.0, size, 1.0)
+
+    def away(start: Array) -> Array:
+        error = np.where(there, measured - show(start), 0.0) / noise
+        return np.asarray(np.nan_to_num(error, nan=1e9), dtype=float)
+
+    start = _least(first, unsure, steps, away, np.where(there, 1.0, 0.0))
+    misfit = np.maximum(np.mean(away(start) ** 2, axis=0), 1.0)
+    counts = 1.0 / (1.0 + (misfit - 1.0) * len(measured) / _VALUES) / misfit
+    unsure = np.hypot(errors, carried / np.max(misfit))  # of a wrong model it would take up the misfit
+    return _least(first, unsure, steps, away, np.where(there, counts, 0.0))
+
+
+def _least(first: Array, unsure: Array, steps: Array, away: Callable[[Array], Array], counts: Array) -> Array:
+    """The likeliest start, by Gauss and Newton's steps.
+
+    Args:
+        unsure: (3,), how far `first` may be off.
+        away: errors (n x 3) of a start in noises.
+        counts: (3,), what an error of each channel counts for.
+    """
+    free = np.flatnonzero(unsure > 0.0)
+
+    def rows(start: Array) -> Array:
+        whole = (away(start) * np.sqrt(counts)).ravel()
+        return np.concatenate([whole, ((start - first) / np.maximum(unsure, 1e-300))[free]])
+
+    start, left = first.astype(float), rows(first)
+    for _ in range(_ROUNDS):
+        slopes = np.stack([(rows(start + one) - left) / one.sum() for one in np.diag(steps)[free]])
+        trial = start.copy()
+        trial[free] -= np.linalg.lstsq(slopes.T, left, rcond=None)[0]
+        after = rows(trial)
+        if not after @ after < left @ left:
+            break
+        start, left = trial, after
+    return start

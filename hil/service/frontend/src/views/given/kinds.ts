@@ -1,0 +1,82 @@
+// Kinds of files in TOML that people give: where they are, and how a new one begins.
+
+import { to } from "../../addresses.ts";
+import { t } from "../../i18n/text.ts";
+
+export type GivenKind = "model" | "controller" | "bench";
+
+interface Kind {
+  path: string; // of the API
+  list: "models" | "controllers" | "bench-files";
+  address: (name: string) => string;
+  write: string; // what writing a new one is called
+  edit: string;
+  label: string; // of its text
+  start: string;
+}
+
+const MODEL = `# What this is a model of.
+kind = "three_inertia"
+
+[parameters]
+motor_inertia = 0.02        # kg m2
+gear_ratio = 8.148          # motor speed / wheel speed
+shaft_stiffness = 6089.0    # N m/rad
+shaft_damping = 19.75       # N m s/rad
+wheel_inertia = 4.355       # kg m2, wheels and dyno rotors
+tyre_stiffness = 5717.0     # N m/rad
+tyre_damping = 351.0        # N m s/rad
+vehicle_inertia = 303.0     # kg m2
+torque_delay = 0.008        # s
+`;
+
+const BENCH = `name = "my_bench"
+title = "What this bench is"
+
+[buses.rmcu]
+interface = "hil-sim"
+channel = "my_bench/rmcu"
+bit_rate = 1000000
+
+[buses.dyno]
+interface = "hil-sim"
+channel = "my_bench/dyno"
+bit_rate = 1000000
+
+[rmcu]
+bus = "rmcu"
+dbc = "rmcu.dbc"
+
+[dyno]
+bus = "dyno"
+eds = "rcs_dyno.eds"
+rear_left = 3
+rear_right = 4
+
+[limits]
+motor_torque_nm = 150.0
+driving_torque_nm = 600.0
+shaft_torque_nm = 1200.0
+motor_speed_rad_s = 700.0
+wheel_speed_rad_s = 85.0
+vehicle_speed_m_s = 28.0
+
+[simulation]
+model = "three_inertia.toml"
+`;
+
+// Texts are looked up when they are shown: in the language of then.
+export const kindOf = (kind: GivenKind): Kind => ({
+  model: { path: "/models", list: "models", address: to.model, write: t("Write a model"), edit: t("Make a new version of the model"), label: t("Text of the model"), start: MODEL },
+  controller: { path: "/controllers", list: "controllers", address: to.controller, write: t("Write a controller"), edit: t("Make a new version of the controller"), label: t("Text of the controller"), start: "" },
+  bench: { path: "/bench-files", list: "bench-files", address: to.benchFile, write: t("Write a bench file"), edit: t("Make a new version of the bench file"), label: t("Text of the bench file"), start: BENCH },
+} as const)[kind];
+
+// What a name stands for stays: axle, axle_2, axle_3.
+export function nextName(name: string, taken: string[]): string {
+  const [, stem = name, count] = /^(.*?)(?:_(\d+))?$/.exec(name) ?? [];
+  for (let next = Number(count ?? 1) + 1; ; next += 1) {
+    const found = `${stem.slice(0, 58)}_${next}`;
+    if (!taken.includes(found)) return found;
+  }
+}

@@ -1,0 +1,72 @@
+"""Where a replay begins: as well as its first seconds tell, without hiding what a model lacks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hil.core.channels import INPUT, TIME
+from hil.core.model import Model
+from hil.core.recording import Recording
+from hil.plant import Start, replay, simulate
+from hil.plant._starts import beginning, settled
+
+STEP_S = 1e-3
+NOISE = {"motor_speed_rad_s": 0.5, "wheel_speed_rad_s": 0.05, "shaft_torque_nm": 3.0}
+CHAIN = Model(
+    "two_inertia",
+    {
+        "motor_inertia": 0.02,
+        "gear_ratio": 10.0,
+        "shaft_stiffness": 6000.0,
+        "shaft_damping": 20.0,
+        "vehicle_inertia": 300.0,
+        "torque_delay": 0.02,
+    },
+)
+
+
+def _torque(seconds: float, seed: int) -> np.ndarray:
+    """Random levels of a tenth of a second, N m."""
+    levels = np.random.default_rng(seed).normal(0.0, 20.0, round(10 * seconds))
+    return np.repeat(levels, round(0.1 / STEP_S))
+
+
+def _measured(seed: int, cut: int, model: Model = CHAIN) -> Recording:
+    """A recording that begins in mid-motion, with noise; what was asked for before is not in it."""
+    torque = _torque(12.0, seed)
+    truth = simulate(model, torque, STEP_S, Start(100.0, 10.0))
+    rng = np.random.default_rng(seed + 1)
+    noisy = {name: truth[name][cut:] + rng.normal(0.0, NOISE[name], len(torque) - cut) for name in NOISE}
+    time = np.arange(0.0, len(torque) - cut) * STEP_S
+    return Recording({TIME: time, INPUT: torque[cut:], **noisy}, Path("cut.csv"))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_replay_of_the_true_model_leaves_noise_alone(seed: int) -> None:
+    recording = _measured(seed, cut=150)  # in the middle of a level, its dead time full of the same torque
+    shown = replay(CHAIN, recording)
+    for name, noise in NOISE.items():
+        left = np.sqrt(np.mean((recording[name] - shown[name]) ** 2))
+        assert left == pytest.approx(noise, rel=0.02), name
+
+
+def test_a_start_does_not_hide_what_a_model_lacks() -> None:
+    """A replay of the wrong inertia begins within the noise of the first samples."""
+    recording = _measured(0, cut=150)
+    wrong = CHAIN.with_parameters(vehicle_inertia=150.0, torque_delay=0.0)
+    shown = replay(wrong, recording)
+    read, error = beginning(recording["wheel_speed_rad_s"])
+    assert abs(shown["wheel_speed_rad_s"][0] - read) <= 4.0 * error + 1e-9
+
+
+def test_first_samples_without_noise_are_the_start() -> None:
+    first = np.array([3.0, 1.0, 2.0])
+    measured = np.tile(first, (100, 1))
+    assert np.array_equal(settled(first, np.zeros(3), np.zeros(3), measured, lambda at: measured + at), first)
+
+
+def test_a_channel_that_was_not_recorded_has_no_beginning() -> None:
+    assert np.isnan(beginning(np.full(30, np.nan))).all()
