@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from hil.analysis.identification._identify import Identification, meta_of, physical_of
 from hil.analysis.identification._rational_fit import Fit
@@ -13,8 +12,6 @@ from hil.analysis.identification._table import model_of
 from hil.analysis.identification._trust import Judgement, judge
 from hil.core.errors import BadInputError
 from hil.core.model import Model
-
-_DRAWS = 200
 
 
 @dataclass(frozen=True)
@@ -27,7 +24,7 @@ class OrderModel:
 
 @dataclass(frozen=True)
 class Resonance:
-    """A pole pair: |p|/2π and -Re p/|p|, with standard errors by draws from the fit's covariance."""
+    """A pole pair: |p|/2π and -Re p/|p|, with standard errors."""
 
     frequency_hz: float
     damping: float
@@ -79,21 +76,22 @@ def information_criterion(fit: Fit) -> float:
     return float(fit.chi_square * max(values - unknowns, 1) + unknowns * np.log(values))
 
 
-def resonances_of(fit: Fit, seed: int = 1) -> tuple[Resonance, ...]:
-    """Oscillating pole pairs, lowest first."""
-    generator = np.random.default_rng(seed)
-    nominal = _pairs(fit.modes.pole_locations())
-    drawn = [_pairs(fit.sample(generator).pole_locations()) for _ in range(_DRAWS)]
-    same = [one for one in drawn if len(one) == len(nominal)]  # a pair may fall apart into real poles
-    errors = np.std(same, axis=0) if len(same) > 1 else np.full(nominal.shape, np.nan)
-    return tuple(
-        Resonance(float(hz), float(damping), float(hz_error), float(damping_error))
-        for (hz, damping), (hz_error, damping_error) in zip(nominal, errors, strict=True)
-    )
+def resonances_of(fit: Fit) -> tuple[Resonance, ...]:
+    """Oscillating pole pairs, lowest first.
 
-
-def _pairs(poles: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
-    """Frequency in Hz and damping ratio of each pole above the real axis, P x 2."""
-    above = poles[poles.imag > 1e-9 * np.max(np.abs(poles), initial=1e-300)]
-    size = np.abs(above)
-    return np.stack([size / (2 * np.pi), -above.real / size], axis=1)
+    A section s² + a s + b has ω = √b and ζ = a/(2√b); the covariance is of log a and log b, so that relative
+    errors follow from it by Gauss's law.
+    """
+    found = []
+    for section in range(fit.modes.structure.sections):
+        at = slice(2 * section, 2 * section + 2)
+        a, b = fit.modes.poles[at]
+        if a * a >= 4 * b:
+            continue
+        covariance = fit.covariance[at, at]
+        frequency, damping = np.sqrt(b) / (2 * np.pi), a / (2 * np.sqrt(b))
+        of_frequency, of_damping = np.array([0.0, 0.5]), np.array([1.0, -0.5])
+        errors = [np.sqrt(max(one @ covariance @ one, 0.0)) for one in (of_frequency, of_damping)]
+        values = (frequency, damping, frequency * errors[0], damping * errors[1])
+        found.append(Resonance(*(float(one) for one in values)))
+    return tuple(sorted(found, key=lambda pair: pair.frequency_hz))

@@ -32,6 +32,7 @@ TASKS = {
     "campaign": "_campaigning:given",
     "campaign_so_far": "_campaigning:so_far",
     "campaign_findings": "_campaign_findings:findings",
+    "campaign_car": "_campaign_car:files",
     "campaign_table": "_campaigning:table",
     "read_plan": "plan_reading:plan",
     "read_model": "plan_reading:model",

@@ -52,7 +52,8 @@ def fit_band(fit: Fit, frequency_hz: Array) -> dict[str, ComplexArray]:
     """Responses drawn from a fit's covariance, by output: draws x frequencies, the fit itself first."""
     generator = np.random.default_rng(1)
     drawn = [fit.modes, *(fit.sample(generator) for _ in range(_BAND_DRAWS))]
-    responses = np.array([one.response(frequency_hz) for one in drawn])
+    with np.errstate(all="ignore"):  # a pole that the data say nothing of has no bounds
+        responses = np.array([one.response(frequency_hz) for one in drawn])
     return {name: responses[:, row] for row, name in enumerate(fit.outputs)}
 
 
@@ -61,9 +62,10 @@ def _band_fields(fit: ComplexArray, drawn: ComplexArray | None) -> dict[str, Any
     if drawn is None:
         none = [None] * len(fit)
         return dict.fromkeys(_BAND_NAMES, none)
-    ratio = drawn / fit
-    decibel = _IN_95 * np.std(20 * np.log10(np.abs(ratio)), axis=0)
-    degrees = _IN_95 * np.std(np.degrees(np.angle(ratio)), axis=0)
+    with np.errstate(all="ignore"):
+        ratio = drawn / fit
+        decibel = _IN_95 * np.std(20 * np.log10(np.abs(ratio)), axis=0)
+        degrees = _IN_95 * np.std(np.degrees(np.angle(ratio)), axis=0)
     gain, phase = 20 * np.log10(np.abs(fit)), np.degrees(np.unwrap(np.angle(fit)))
     edges = (gain - decibel, gain + decibel, phase - degrees, phase + degrees)
     return {name: numbers(edge) for name, edge in zip(_BAND_NAMES, edges, strict=True)}

@@ -57,12 +57,20 @@ def test_chains_that_were_not_taken_say_so(found: Identification) -> None:
     assert models[0].meta["explains_the_data"] is False
 
 
-def test_the_resonance_has_an_error_that_grows_with_the_covariance(found: Identification) -> None:
-    (pair, *_) = resonances_of(found.fit)
-    wider = dataclasses.replace(found.fit, covariance=100 * found.fit.covariance)
-    (same, *_) = resonances_of(wider)
-    assert pair.frequency_hz == same.frequency_hz
-    assert same.frequency_error_hz == pytest.approx(10 * pair.frequency_error_hz, rel=0.2)
+def test_errors_of_the_resonance_are_those_of_draws(found: Identification) -> None:
+    nearest = min(resonances_of(found.fit), key=lambda one: abs(one.frequency_hz - 11))
+    generator = np.random.default_rng(1)
+    drawn = [found.fit.sample(generator).pole_locations() for _ in range(400)]
+    poles = [min(one, key=lambda p: abs(p.imag - 2 * np.pi * nearest.frequency_hz)) for one in drawn]
+    frequencies = [abs(pole) / (2 * np.pi) for pole in poles]
+    assert nearest.frequency_hz == pytest.approx(np.mean(frequencies), rel=1e-3)
+    assert nearest.frequency_error_hz == pytest.approx(np.std(frequencies), rel=0.15)
+    assert nearest.damping_error == pytest.approx(np.std([-p.real / abs(p) for p in poles]), rel=0.15)
+
+
+def test_a_pole_that_data_say_nothing_of_has_a_large_error_and_no_traceback(found: Identification) -> None:
+    wide = dataclasses.replace(found.fit, covariance=1e8 * found.fit.covariance)
+    assert all(np.isfinite(one.frequency_error_hz) for one in resonances_of(wide))
 
 
 def test_the_criterion_is_schwarz_for_known_noise(found: Identification) -> None:

@@ -58,3 +58,4 @@ export type RecordingCurve = Schemas["RecordingCurve"];
 export type PlanMistake = Schemas["PlanMistake"];
 export type CloudData = Schemas["CloudData"];
 export type SegmentsData = Schemas["SegmentsData"];
+export type SimulationFiles = Schemas["SimulationFiles"];
