@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from hil.api_schemas.api import Record, RunId
 from hil.api_schemas.design import FileName, Numbers
 
-StudyKind = Literal["identification", "diagnosis"]
+StudyKind = Literal["identification", "diagnosis", "tuning", "autotuning"]
 StudyState = Literal["waiting", "running", "ended", "failed", "cancelled", "interrupted"]
 STUDY_OVER: tuple[StudyState, ...] = ("ended", "failed", "cancelled", "interrupted")
 #: Of runs, or of recordings that were given.
@@ -46,13 +46,15 @@ class DiagnosisWanted(_OfRecordings):
 
 
 class StudyData(Record):
-    """An identification or a diagnosis: queued, active or finished."""
+    """An identification, a diagnosis or a tuning: queued, active or finished."""
 
     kind: StudyKind
     state: StudyState
     runs: list[int]
     recordings: list[int] = Field([], description="given recordings")
-    model: str = Field("", description="model of a diagnosis")
+    model: str = Field("", description="model of a diagnosis or a tuning")
+    plan: str = Field("", description="plan of a tuning")
+    bench: str = Field("", description="bench of a tuning")
     requested_by: str
     asked_at: datetime.datetime
     ended_at: datetime.datetime | None = None

@@ -29,6 +29,7 @@ TASKS = {
     "cloud": "_cloud:cloud",
     "segments": "_segments:segments",
     "fitted": "_fitted:fitted",
+    "envelope": "_tuning:envelope",
     "campaign": "_campaigning:given",
     "campaign_so_far": "_campaigning:so_far",
     "campaign_findings": "_campaign_findings:findings",

@@ -59,3 +59,6 @@ export type PlanMistake = Schemas["PlanMistake"];
 export type CloudData = Schemas["CloudData"];
 export type SegmentsData = Schemas["SegmentsData"];
 export type SimulationFiles = Schemas["SimulationFiles"];
+export type Envelope = Schemas["EnvelopeData"];
+export type Tuning = Schemas["TuningData"];
+export type Autotuning = Schemas["AutotuningData"];
