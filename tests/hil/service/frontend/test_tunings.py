@@ -1,4 +1,4 @@
-"""Controllers are tuned on the page: on a model, and on a simulated bench within what a person consents to."""
+"""Controllers are tuned on the page: on a model, and on a simulated bench with a person's consent."""
 
 from __future__ import annotations
 
