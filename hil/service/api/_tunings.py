@@ -70,7 +70,7 @@ async def get_tuning(study: RunId, service: TheService, me: Viewer) -> TuningDat
         progress=progress,
         figures=found["front"]["figures"],
         front=found["front"]["points"],
-        worse=[one["words"] for one in found["worse"]],
+        worse=[_in_words(one) for one in found["worse"]],
         **{name: found[name] for name in same},
     )
 
@@ -133,6 +133,11 @@ async def get_autotuning(study: RunId, service: TheService, me: Viewer) -> Autot
         decisions=decisions,
         **{name: found[name] for name in same if found.get(name) is not None},
     )
+
+
+def _in_words(worse: dict[str, Any]) -> str:
+    unit = f" {worse['unit']}" if worse["unit"] not in ("", "1") else ""
+    return f"{worse['words']}: {worse['start']:.4g} → {worse['value']:.4g}{unit}"
 
 
 _DECISION = ("round", "stage", "found", "decided", "why")
