@@ -117,6 +117,17 @@ class WorstSimulation(_Data):
     inputs: dict[str, float]
 
 
+class SimulationFiles(_Data):
+    """A simulation of a campaign as files that a service takes: they name each other by these names."""
+
+    name: str = Field(description="for bench file, plan, and controller if there is one")
+    model_name: str
+    plan: str = Field(description="text of the plan with the simulation's values and controller")
+    model: str = Field(description="text of the car's model file")
+    bench: str = Field(description="text of a simulated bench with this car")
+    controller: str | None = Field(description="text of its file; null for what the plan itself loads")
+
+
 class ControllerFindings(_Data):
     """What the simulations of one controller came to."""
 

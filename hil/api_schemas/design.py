@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from hil.api_schemas.api import Number
+from hil.api_schemas.api import Number, PlanName
 
 FileName = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")]
 Numbers = list[float | None]
@@ -95,6 +95,87 @@ class DraftData(_Data):
     time_s: list[float] = Field(description="of the steps, which are at 0")
     steps: list[DraftStep]
     steps_why_not: str = Field(description="reason why no step was simulated")
+    notes: list[str]
+
+
+class CloudWanted(DraftWanted):
+    """A draft on cars that are drawn around its model."""
+
+    cars: int = Field(40, ge=1, le=200)
+    tolerance: dict[str, Number] | None = Field(
+        None,
+        max_length=20,
+        description="half widths, relative, by the model's parameters, and `dead_time_s`; null: those of the "
+        "model's file, or as `hil tune`; the model's standard errors are drawn from in any case",
+    )
+    seed: int = Field(1, ge=0, le=2**31 - 1)
+
+
+class CarFigures(_Data):
+    """A draft on one car."""
+
+    margins: MarginData
+    overshoot_nm: Numbers = Field(description="of the shaft torque, at the speeds of the draft's steps")
+    band_energy: float | None = Field(
+        description="of the motor speed in 8-20 Hz around the step at 20 km/h, (rad/s)²"
+    )
+    differs: dict[str, float] = Field(description="numbers of this car that are not the model's")
+
+
+class CloudLoop(_Data):
+    """A car's open loop."""
+
+    real: Numbers
+    imaginary: Numbers
+
+
+class CloudData(_Data):
+    """A draft on the model itself (first) and on the cars drawn around it."""
+
+    source: str = Field(description="where the cars come from")
+    frequency_hz: list[float]
+    loops: list[CloudLoop]
+    sensitivity_lower: Numbers = Field(description="smallest |S| of all cars at each frequency")
+    sensitivity_upper: Numbers
+    worst: int = Field(description="place of the car that is unstable or has the largest |S|")
+    worst_sensitivity: Numbers
+    cars: list[CarFigures]
+    steps_why_not: str = Field(description="reason why no step was simulated")
+
+
+class SegmentsWanted(CloudWanted):
+    """A draft in the segments of a plan."""
+
+    plan: PlanName
+
+
+class SegmentLoop(_Data):
+    """A controller's speed loop in a segment: on the model, and the worst of the cars."""
+
+    margins: MarginData
+    worst: MarginData
+    stable_share: float = Field(description="of the cars, the model among them")
+
+
+class SegmentData(_Data):
+    """A segment of driving torque with the loops that the plan's controller and the draft close."""
+
+    segment: str
+    speed_km_h: float
+    friction: float = Field(description="of the road under the worse tyre; 1: dry")
+    mass_kg: float | None = Field(description="of the vehicle; null: the model's")
+    sliding: bool = Field(description="while the tyres slide; else while they grip")
+    controller: str = Field(description="name of the file that the plan loads")
+    own: SegmentLoop
+    draft: SegmentLoop
+
+
+class SegmentsData(_Data):
+    """A plan's segments, and where the cars come from."""
+
+    source: str
+    cars: int
+    segments: list[SegmentData]
     notes: list[str]
 
 

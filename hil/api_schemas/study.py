@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from hil.api_schemas.api import Record, RunId
 from hil.api_schemas.design import FileName, Numbers
 
-StudyKind = Literal["identification", "diagnosis"]
+StudyKind = Literal["identification", "diagnosis", "tuning", "autotuning"]
 StudyState = Literal["waiting", "running", "ended", "failed", "cancelled", "interrupted"]
 STUDY_OVER: tuple[StudyState, ...] = ("ended", "failed", "cancelled", "interrupted")
 #: Of runs, or of recordings that were given.
@@ -46,13 +46,15 @@ class DiagnosisWanted(_OfRecordings):
 
 
 class StudyData(Record):
-    """An identification or a diagnosis: queued, active or finished."""
+    """An identification, a diagnosis or a tuning: queued, active or finished."""
 
     kind: StudyKind
     state: StudyState
     runs: list[int]
     recordings: list[int] = Field([], description="given recordings")
-    model: str = Field("", description="model of a diagnosis")
+    model: str = Field("", description="model of a diagnosis or a tuning")
+    plan: str = Field("", description="plan of a tuning")
+    bench: str = Field("", description="bench of a tuning")
     requested_by: str
     asked_at: datetime.datetime
     ended_at: datetime.datetime | None = None
@@ -73,6 +75,10 @@ class FittedOutput(_Data):
     coherence: Numbers
     fit_gain_db: Numbers
     fit_phase_deg: Numbers
+    fit_gain_lower_db: Numbers = Field(description="95 % interval of the fit itself; null if none is known")
+    fit_gain_upper_db: Numbers
+    fit_phase_lower_deg: Numbers
+    fit_phase_upper_deg: Numbers
 
 
 class FittedParameter(_Data):
@@ -83,6 +89,61 @@ class FittedParameter(_Data):
     value: float
     lower: float | None
     upper: float | None
+
+
+class FittedMisfit(_Data):
+    """Root mean square over frequency of measured minus fitted, noise included."""
+
+    gain_db: float | None
+    phase_deg: float | None
+
+
+class FittedResponse(_Data):
+    """A fit's response of one output."""
+
+    channel: str
+    gain_db: Numbers
+    phase_deg: Numbers
+
+
+class FittedResonance(_Data):
+    """An oscillating pole pair with its standard errors; null if they do not hold."""
+
+    frequency_hz: float | None
+    damping: float | None
+    frequency_error_hz: float | None
+    damping_error: float | None
+
+
+class FittedOrder(_Data):
+    """An order that was tried, and the evidence for it."""
+
+    order: int
+    integrator: bool = Field(description="whether a pole lies at the origin")
+    chosen: bool
+    held_out: float = Field(description="mean squared error on data left out, in noise variances")
+    relative_excess: float = Field(description="rms error on data left out beyond noise, of the response")
+    chi_square: float | None = Field(description="weighted residual per degree of freedom; 1 is noise")
+    bic: float | None = Field(description="Bayesian information criterion; differences count")
+    parameters: int | None = Field(description="number of fitted parameters")
+    dead_time_s: float
+    dead_time_error_s: float | None = Field(description="standard error; null if it does not hold")
+    resonances: list[FittedResonance]
+    verdict: str = Field(description="linear, doubtful, or '' if not known")
+    model: str = Field(description="name of its file; '' without one")
+    misfit: dict[str, FittedMisfit] = Field(description="by output")
+    responses: list[FittedResponse]
+
+
+class FittedChain(_Data):
+    """A driveline chain that was fitted."""
+
+    kind: str
+    chosen: bool
+    explains: bool = Field(description="whether every output is explained")
+    model: str = Field(description="name of its file; '' without one")
+    misfit: dict[str, FittedMisfit] = Field(description="by output")
+    parameters: list[FittedParameter]
 
 
 class IdentificationData(_Data):
@@ -96,6 +157,8 @@ class IdentificationData(_Data):
     frequency_hz: Numbers
     outputs: list[FittedOutput]
     parameters: list[FittedParameter]
+    orders: list[FittedOrder]
+    chains: list[FittedChain]
 
 
 class FoundEffect(_Data):

@@ -64,6 +64,15 @@ class Simulations:
             row = self.failed(number, f"{type(error).__name__}: {error}")
         return {**row, "processor_s": time.process_time() - begun_s}
 
+    def made_of(self, number: int) -> tuple[Plan, Draw, Controller | None]:
+        """Plan, car and controller of one; None for the controller that the plan itself loads.
+
+        Raises:
+            BadInputError: its numbers make no plan, car or controller.
+        """
+        case = self.setting.cases[number]
+        return self._plan(case.values["plan"])[0], self._car(case), self._controller(case)
+
     def failed(self, number: int, words: str) -> Row:
         """The row of a simulation that could not be executed."""
         asked = self._asked(self.setting.cases[number])

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from hil.api_schemas.api import PlanData
 from hil.api_schemas.design import (
+    CloudData,
+    CloudWanted,
     ControllerData,
     DesignData,
     DraftData,
     DraftWanted,
     ModelData,
     PlanCopyWanted,
+    SegmentsData,
+    SegmentsWanted,
 )
 from hil.api_schemas.upload import KeptApart
 from hil.client._requests import WITHIN_S, Requests, part
@@ -60,6 +64,14 @@ class DesignRequests(Requests):
     def draft(self, wanted: DraftWanted) -> DraftData:
         """Loops, margins and steps of a controller on a model."""
         return self._one(DraftData, "POST", "/drafts", wanted, within_s=_FORECAST_WITHIN_S)
+
+    def draft_cloud(self, wanted: CloudWanted) -> CloudData:
+        """A draft on cars drawn around its model."""
+        return self._one(CloudData, "POST", "/drafts/clouds", wanted, within_s=_FORECAST_WITHIN_S)
+
+    def draft_segments(self, wanted: SegmentsWanted) -> SegmentsData:
+        """Margins of a plan's controllers and of a draft in each segment."""
+        return self._one(SegmentsData, "POST", "/drafts/segments", wanted, within_s=_FORECAST_WITHIN_S)
 
     def design(self, wanted: DraftWanted) -> DesignData:
         """A controller's file, judged on every plant that the model's uncertainty allows."""

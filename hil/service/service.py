@@ -155,6 +155,8 @@ class Service:
         self.recordings = GivenRecordings(folder / "recordings", recordings, room)
         # One worker reads recordings, so that a design in the other does not wait.
         self.worker_pool, self.drawing = WorkerPool(niceness=10), WorkerPool(niceness=0)
+        # Cars around a draft take a second: whoever moves a slider meanwhile does not wait for them.
+        self.clouds = WorkerPool(niceness=5)
         # And one looks at runs: an hour that no one followed takes it ten seconds, once.
         self.viewing = WorkerPool(niceness=5, within_s=_VIEW_S)
         self.upload_reader = UploadReader(self.plans)

@@ -206,6 +206,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         await service.recordings.close()
         service.worker_pool.close()
         service.drawing.close()
+        service.clouds.close()
         service.viewing.close()
         service.upload_reader.close()
         for bench in list(service.benches):

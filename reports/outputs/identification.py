@@ -10,7 +10,16 @@ from matplotlib.figure import Figure
 
 from hil.analysis.control_design import resonance_hz
 from hil.analysis.frequency_response import Experiment, frf_to_csv
-from hil.analysis.identification import CHAINS, Identification
+from hil.analysis.identification import (
+    CHAINS,
+    Candidate,
+    Identification,
+    OrderModel,
+    chain_models,
+    information_criterion,
+    order_models,
+    resonances_of,
+)
 from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import share
@@ -24,6 +33,7 @@ def output_files(found: Identification) -> dict[str, bytes]:
     files = {"frf.csv": frf_to_csv(found.frf).encode(), "model.toml": model_to_toml(found.model).encode()}
     if found.physical is not None:
         files["physical.toml"] = model_to_toml(found.physical).encode()
+    files |= _other_models(found)
     resonance = _resonance(found)
     frequency = np.geomspace(found.frf.frequency_hz[0], found.frf.frequency_hz[-1], 600)
     rational = found.fit.modes.response(frequency)
@@ -37,6 +47,22 @@ def output_files(found: Identification) -> dict[str, bytes]:
         picture = figures.bode(found.frf, output, tuple(curves), resonance_hz=resonance)
         files |= _pictures(f"bode_{output}", picture)
     return files | _pictures("coherence", figures.coherence(found.frf, resonance_hz=resonance))
+
+
+def _other_models(found: Identification) -> dict[str, bytes]:
+    """Models of the orders and chains that were not taken, by the names of their files."""
+    others = {}
+    for candidate, one in zip(found.orders.candidates, order_models(found), strict=True):
+        if one is not None and candidate is not found.orders.best:
+            others[_order_file(candidate)] = one.model
+    for model in chain_models(found):
+        if model is not found.physical:
+            others[f"chain_{model.kind}.toml"] = model
+    return {name: model_to_toml(model).encode() for name, model in others.items()}
+
+
+def _order_file(candidate: Candidate) -> str:
+    return f"order_{candidate.order}{'' if candidate.integrator else '_free'}.toml"
 
 
 def _pictures(name: str, figure: Figure) -> dict[str, bytes]:
@@ -92,16 +118,8 @@ def summary_of(found: Identification, experiments: list[Experiment], files: list
         },
         "chi_square": fit.chi_square,
         "orders": [
-            {
-                "order": c.order,
-                "integrator": c.integrator,
-                "held_out": c.held_out,
-                "relative_excess": c.excess,
-                "whiteness": c.whiteness,
-                "dead_time_s": c.fit.modes.delay_s,
-                "chosen": c is best,
-            }
-            for c in found.orders.candidates
+            _order(found, candidate, one)
+            for candidate, one in zip(found.orders.candidates, order_models(found), strict=True)
         ],
         "chains": [] if found.chain is None else _chains(found),
         "chain": None if found.physical is None else found.physical.kind,
@@ -114,6 +132,35 @@ def summary_of(found: Identification, experiments: list[Experiment], files: list
     }
 
 
+def _order(found: Identification, candidate: Candidate, one: OrderModel | None) -> dict[str, Any]:
+    taken, fit = candidate is found.orders.best, candidate.fit
+    sure = one is not None and one.judgement.verdict == "linear"
+    return {
+        "order": candidate.order,
+        "integrator": candidate.integrator,
+        "held_out": candidate.held_out,
+        "relative_excess": candidate.excess,
+        "whiteness": candidate.whiteness,
+        "dead_time_s": fit.modes.delay_s,
+        "dead_time_error_s": fit.delay_error_s if sure else None,
+        "resonances": [
+            {
+                "frequency_hz": pair.frequency_hz,
+                "damping": pair.damping,
+                "frequency_error_hz": pair.frequency_error_hz if sure else None,
+                "damping_error": pair.damping_error if sure else None,
+            }
+            for pair in resonances_of(fit)
+        ],
+        "parameters": len(fit.covariance),
+        "chi_square": fit.chi_square,
+        "bic": information_criterion(fit),
+        "verdict": one.judgement.verdict if one else "doubtful",
+        "model": "model.toml" if taken else _order_file(candidate) if one else None,
+        "chosen": taken,
+    }
+
+
 def _chains(found: Identification) -> list[dict[str, Any]]:
     assert found.chain is not None
     return [
@@ -121,6 +168,7 @@ def _chains(found: Identification) -> list[dict[str, Any]]:
             "kind": one.model.kind,
             "explains": one.explains,
             "chosen": one is found.chain.best,
+            "model": "physical.toml" if one is found.chain.best else f"chain_{one.model.kind}.toml",
             "parameters": one.model.parameters,
             "standard_errors": one.standard_errors if found.verdict == "linear" else None,
             "misfit": {

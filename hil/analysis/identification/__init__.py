@@ -1,5 +1,13 @@
 """Models from frequency responses: rational functions with dead time, and driveline chains."""
 
+from hil.analysis.identification._alternatives import (
+    OrderModel,
+    Resonance,
+    chain_models,
+    information_criterion,
+    order_models,
+    resonances_of,
+)
 from hil.analysis.identification._chain import (
     CHAINS,
     chain_polynomials,
@@ -48,8 +56,11 @@ __all__ = [
     "Misfit",
     "Modes",
     "OrderChoice",
+    "OrderModel",
+    "Resonance",
     "Structure",
     "Trust",
+    "chain_models",
     "chain_polynomials",
     "chain_response",
     "choose_chain",
@@ -59,8 +70,11 @@ __all__ = [
     "fit_chain",
     "fit_of",
     "identify",
+    "information_criterion",
     "judge",
     "model_of",
+    "order_models",
+    "resonances_of",
     "stated_errors",
     "transfer_functions_of",
 ]

@@ -119,15 +119,15 @@ def _identified(
     else:
         notes.append(f"no chain was fitted: that needs '{OUTPUTS[0]}' and another output")
     sources = [experiment.name for experiment in experiments]
-    model = model_of(fit, _meta(frf, fit, chain, judgement, sources))
-    physical = None if chain is None else _physical(chain, doubt, judgement, sources, model.meta["band_hz"])
+    model = model_of(fit, meta_of(frf, fit, chain, judgement, sources))
+    physical = None if chain is None else physical_of(chain, doubt, judgement, sources, model.meta["band_hz"])
     return Identification(frf, orders, chain, model, physical, tuple(notes), judgement, doubts)
 
 
-def _meta(
+def meta_of(
     frf: FrequencyResponse, fit: Fit, chain: ChainChoice | None, judgement: Judgement, sources: list[str]
 ) -> dict[str, object]:
-    """What the model file says beside the functions; standard errors only where they hold."""
+    """What a model's file says beside the functions; standard errors only where they hold."""
     meta: dict[str, object] = {
         "sources": sources,
         "method": frf.method,
@@ -154,9 +154,10 @@ def _standard_errors(fit: Fit) -> dict[str, list[float]]:
     return errors
 
 
-def _physical(
+def physical_of(
     chain: ChainChoice, doubt: str, judgement: Judgement, sources: list[str], band_hz: object
 ) -> Model:
+    """The chain that is taken, as a model."""
     best = chain.best
     meta: dict[str, object] = {
         "sources": sources,

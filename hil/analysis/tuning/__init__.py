@@ -19,6 +19,13 @@ from hil.analysis.tuning._parameters import ALTERNATIVES, PARAMETERS, Space, val
 from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._refine import Bench, Measured, RefinedRun, Refinement, RefinementBudget, refine
 from hil.analysis.tuning._search import Effort
+from hil.analysis.tuning._segment_loops import (
+    DrivenSegment,
+    driven_segments,
+    gain_factor,
+    sliding,
+    with_mass,
+)
 from hil.analysis.tuning._trial import DEVICE_LIMIT, CarryOut, Predicted, Trial, Tried, channels_needed
 from hil.analysis.tuning._tune import Standing, Tuning, refuse_model, refuse_start, tune
 
@@ -34,6 +41,7 @@ __all__ = [
     "Confirmation",
     "Draw",
     "Driven",
+    "DrivenSegment",
     "Effort",
     "Free",
     "Kept",
@@ -57,8 +65,10 @@ __all__ = [
     "differing",
     "draws_of",
     "driven_by",
+    "driven_segments",
     "free_from_toml",
     "front_of",
+    "gain_factor",
     "metrics_of",
     "point_of",
     "read_free",
@@ -69,8 +79,10 @@ __all__ = [
     "scatter",
     "score",
     "shipped_free",
+    "sliding",
     "tune",
     "values_of",
+    "with_mass",
     "with_values",
     "within_hard_limits",
     "worse_of",

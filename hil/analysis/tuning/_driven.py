@@ -26,7 +26,7 @@ def driven_by(plan: Plan, name: str = "") -> Driven:
     Raises:
         BadInputError: the plan loads no such controller, or nothing that is judged depends on it.
     """
-    walk = _Walk()
+    walk = ControllerWalk()
     for step in plan.steps:
         step.execute(walk)
     files = list(dict.fromkeys(file for file in walk.driver.values() if file.is_absolute()))
@@ -75,24 +75,24 @@ def _refuse_contradictions(criteria: tuple[Criterion, ...], plan: Plan) -> None:
                 )
 
 
-class _Walk:
+class ControllerWalk:
     """A `Conductor` that only remembers which controller file is loaded when a segment is driven."""
 
     sample_time_s = 0.001
 
     def __init__(self) -> None:
-        self._file = Path()
+        self.file = Path()
         self.driver: dict[str, Path] = {}
 
     def set_controller(self, file: Path) -> None:
         """From now on."""
-        self._file = file
+        self.file = file
 
     def play(self, quantity: Quantity, samples_nm: Array, segment: PlannedSegment | None) -> None:
         """A segment of driving torque depends on the controller; one of motor torque does not."""
         del samples_nm
         if segment is not None and quantity == "driving_torque":
-            self.driver[segment.id] = self._file
+            self.driver[segment.id] = self.file
 
     def hold_speed(self, speed_m_s: float, duration_s: float) -> None:
         """Nothing to remember."""

@@ -47,15 +47,26 @@ class SpeedLoops:
         some._origin_poles = [self._origin_poles[number] for number in numbers]
         return some
 
+    @property
+    def plants(self) -> ComplexArray:
+        """Sampled motor speed responses, models x frequencies."""
+        return np.array(self._plants)
+
+    @property
+    def origin_poles(self) -> tuple[int, ...]:
+        """Of the open loop around each model: the controller's and the axle's own."""
+        return tuple(self._origin_poles)
+
     def margins(self, controller: Controller, number: int) -> Margins:
         """Of the loop that `controller` closes around model `number`; of a schedule, where |S| is largest."""
-        loop = self.open_loop(controller, number)
         factors = {1.0} if controller.schedule is None else set(controller.schedule.wsc_factor) - {0.0}
-        found = [
-            margins(self.frequency_hz, factor * loop, self._origin_poles[number])
-            for factor in sorted(factors or {1.0})
-        ]
+        found = [self.margins_with(controller, number, factor) for factor in sorted(factors or {1.0})]
         return max(found, key=lambda one: (not one.stable, one.sensitivity_peak))
+
+    def margins_with(self, controller: Controller, number: int, factor: float) -> Margins:
+        """Of the loop around model `number` with K_p and K_i times `factor`."""
+        loop = factor * self.open_loop(controller, number)
+        return margins(self.frequency_hz, loop, self._origin_poles[number])
 
     def open_loop(self, controller: Controller, number: int) -> ComplexArray:
         """F values on `frequency_hz`."""

@@ -19,7 +19,7 @@ from hil.app.tuning.search_files import Search
 from hil.core.controller import controller_to_toml
 from hil.core.errors import BadInputError
 from hil.core.model import Model
-from hil.engine.prediction.forecast import envelope_of
+from hil.engine.prediction.forecast import Envelope, envelope_of
 from hil.engine.prediction.prediction import predict
 from reports import HTML, PDF
 from reports.autotune_report import autotune_page
@@ -76,6 +76,17 @@ def autotune(
     return Outcome(Autotuned(closing, code), summary, place.folder)
 
 
+def proposed_envelope(request: AutotuneRequest) -> Envelope:
+    """What a sequence would ask of its bench, before anybody consents to it; nothing moves.
+
+    Raises:
+        BadInputError: something cannot be used, or a plan leaves the envelope.
+    """
+    sequence = load_sequence(request.sequence)
+    search = search_for(sequence, request.model, request.bench)
+    return _envelope(request, sequence, load_plan(sequence.identify_plan), search)
+
+
 def _settings(request: AutotuneRequest, sequence: Sequence, feedback: Feedback) -> LoopSettings:
     """What is wanted, read, checked, predicted and consented to."""
     identify = load_plan(sequence.identify_plan)
@@ -103,6 +114,12 @@ def _allowed(
     request: AutotuneRequest, sequence: Sequence, identify: Plan, search: Search, feedback: Feedback
 ) -> Allowed:
     """An envelope around both plans as the given model predicts them, consented to."""
+    found = _envelope(request, sequence, identify, search)
+    plans = (identify, search.plan)
+    return Allowed(search.bench, found, consent(plans, search.bench, found, request.confirm, feedback))
+
+
+def _envelope(request: AutotuneRequest, sequence: Sequence, identify: Plan, search: Search) -> Envelope:
     axle: Model = search.trial.draws[0].model
     accepted = predicted_run(search.trial, axle, None)
     identified = predict(identify, search.bench, axle)
@@ -111,9 +128,7 @@ def _allowed(
     runs = 2 + sequence.rounds * sequence.runs
     once_s, again_s = (float(one.recording.time_s[-1]) for one in (identified, accepted))
     mean_s = (once_s + (runs - 1) * again_s) / runs
-    found = envelope_of(search.bench, peaks, runs, mean_s, dict(request.envelope))
-    plans = (identify, search.plan)
-    return Allowed(search.bench, found, consent(plans, search.bench, found, request.confirm, feedback))
+    return envelope_of(search.bench, peaks, runs, mean_s, dict(request.envelope))
 
 
 def _refuse_unvaried(plan: Plan) -> None:

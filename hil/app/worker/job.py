@@ -77,7 +77,10 @@ def _execute(folder: Path) -> int:
     from hil.app import requests
 
     wanted = json.loads((folder / REQUEST).read_bytes())
-    kind, work = getattr(requests, wanted["kind"]), _WORK[wanted["kind"]]
+    kind = getattr(requests, wanted["kind"])
+    if wanted["kind"] in _REPORTING:
+        return _REPORTING[wanted["kind"]](TypeAdapter(kind).validate_python(wanted["request"]), folder)
+    work = _WORK[wanted["kind"]]
     return work(TypeAdapter(kind).validate_python(wanted["request"]))
 
 
@@ -123,6 +126,29 @@ def _check(request: object) -> int:
     return 0 if checked.forecast.fits else 1
 
 
+def _tune(request: object, folder: Path) -> int:
+    """A controller that fails a criterion is a result, too."""
+    from hil.app.requests import TuneRequest
+    from hil.app.tuning.tune import tune_controller
+    from hil.app.worker.job_feedback import FileFeedback
+
+    assert isinstance(request, TuneRequest)
+    found = tune_controller(request, FileFeedback(folder)).found
+    return EXIT_CODE if found.stopped else 0 if found.exit_code == 1 else found.exit_code
+
+
+def _autotune(request: object, folder: Path) -> int:
+    from hil.app.autotune.autotune import autotune
+    from hil.app.requests import AutotuneRequest
+    from hil.app.worker.job_feedback import FileFeedback
+
+    assert isinstance(request, AutotuneRequest)
+    feedback = FileFeedback(folder)
+    code = autotune(request, feedback).found.exit_code
+    return 0 if code == 1 else code
+
+
+_REPORTING: dict[str, Callable[[object, Path], int]] = {"TuneRequest": _tune, "AutotuneRequest": _autotune}
 _WORK: dict[str, Callable[[object], int]] = {
     "IdentifyRequest": _identify,
     "DiagnoseRequest": _diagnose,

@@ -32,6 +32,7 @@ from hil.service.api import (
     _sign_in,
     _studies,
     _trends,
+    _tunings,
     _versions,
 )
 from hil.service.api._guard import Guard, Guarding
@@ -60,6 +61,7 @@ _PARTS = (
     _versions,
     _recordings,
     _studies,
+    _tunings,
     _campaigns,
     _layouts,
     _people,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Body
+from fastapi import APIRouter, Body, Path
 from fastapi.responses import FileResponse
 from starlette.responses import Response
 
@@ -16,6 +16,7 @@ from hil.api_schemas.campaign import (
     CampaignExample,
     CampaignFindings,
     CampaignWanted,
+    SimulationFiles,
 )
 from hil.service.api._access import Engineer, TheService, Viewer
 from hil.service.api._left_files import left_file
@@ -100,6 +101,24 @@ async def get_campaign_findings(campaign: RunId, service: TheService, me: Viewer
     return CampaignFindings(
         **await service.worker_pool.ask("campaign_findings", summary=summary, table=table)
     )
+
+
+@router.get("/campaigns/{campaign}/simulations/{simulation}", name="get_campaign_simulation")
+async def get_campaign_simulation(
+    campaign: RunId,
+    simulation: Annotated[int, Path(ge=0, le=10_000_000)],
+    service: TheService,
+    me: Engineer,
+) -> SimulationFiles:
+    """A simulation as files: given back to the service, it is run on a simulated bench."""
+    del me
+    refuse_elsewhere("campaign", _there(service, campaign))
+    folder = service.campaigns.given(campaign)
+    name = f"campaign-{campaign}-car-{simulation}"
+    found = await service.worker_pool.ask(
+        "campaign_car", folder=str(folder.resolve()), simulation=simulation, name=name
+    )
+    return SimulationFiles(**found)
 
 
 @router.get("/campaigns/{campaign}/files/{name}", name="get_campaign_file", response_class=Response)

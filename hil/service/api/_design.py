@@ -8,6 +8,8 @@ from fastapi import APIRouter, Body, Request, Response
 
 from hil.api_schemas.api import PlanData, PlanName
 from hil.api_schemas.design import (
+    CloudData,
+    CloudWanted,
     ControllerData,
     DesignData,
     DraftData,
@@ -15,6 +17,8 @@ from hil.api_schemas.design import (
     FileName,
     ModelData,
     PlanCopyWanted,
+    SegmentsData,
+    SegmentsWanted,
 )
 from hil.service.api._access import Engineer, TheService, Viewer
 from hil.service.api._given_files import GIVEN, body_of, described, file_text, readable
@@ -122,6 +126,26 @@ async def draft(wanted: Annotated[DraftWanted, Body()], service: TheService, me:
     # As the worker wrote it: who moves a slider waits for it.
     found = await service.drawing.ask_text("draft", **_chosen(service, wanted))
     return Response(found, media_type="application/json")
+
+
+@router.post("/drafts/clouds", name="draft_cloud", response_model=CloudData)
+async def draft_cloud(wanted: Annotated[CloudWanted, Body()], service: TheService, me: Engineer) -> Response:
+    """A draft on cars drawn around its model: loops, margins, overshoot and band energy; about a second."""
+    del me
+    found = await service.clouds.ask_text("cloud", **_chosen(service, wanted))
+    return Response(found, media_type="application/json")
+
+
+@router.post("/drafts/segments", name="draft_segments")
+async def draft_segments(
+    wanted: Annotated[SegmentsWanted, Body()], service: TheService, me: Engineer
+) -> SegmentsData:
+    """Margins in every segment of a plan, of its own controllers and of a draft in their place."""
+    del me
+    if service.plans.get(wanted.plan) is None:
+        raise missing("plan", wanted.plan)
+    chosen = {**_chosen(service, wanted), "plan": str(service.plans.source(wanted.plan).resolve())}
+    return SegmentsData(**await service.clouds.ask("segments", **chosen))
 
 
 @router.post("/designs", name="design")

@@ -13,7 +13,7 @@ from hil.core.errors import BadInputError
 from hil.core.files import read_text
 from hil.service.files.pictures import Pictures
 from hil.service.files.uploads import NameTakenError, Uploads
-from hil.service.worker_pool.plan_reading import GivenPlan, data_of, given_plan, read_given
+from hil.service.worker_pool.plan_reading import GivenPlan, data_of, given_plan, read_given, renamed
 from test_plans import Choices, Plan, library_plans, load_plan, plan_from_text
 from test_plans.yaml_document import read_yaml
 
@@ -136,7 +136,7 @@ class Plans:
         text = Choices(controllers=chosen).applied(text, read_yaml(text, name))
         for path in chosen.values():  # plans find what lies beside them by its name alone
             text = text.replace(json.dumps(str(path), ensure_ascii=False), json.dumps(path.name))
-        text = _renamed(text, copy)
+        text = renamed(text, copy)
         if self.text(copy) not in (None, text):
             raise NameTakenError("is the name of another plan", where=copy, fix="give the copy another name")
         return self.give(copy, text, by, replace=False, based_on=name)
@@ -186,17 +186,6 @@ class Plans:
         self._controllers.paths()
         self._pictures.bring()
         return self._given.folder
-
-
-def _renamed(text: str, name: str) -> str:
-    """A plan's text with another name, which stands in its title too."""
-    document = read_yaml(text, name)
-    content = document.value if isinstance(document.value, dict) else {}
-    changes = {("name",): name, ("title",): f"{content.get('title', '')}, {name}"}
-    places = {document.spans[path]: value for path, value in changes.items() if path in document.spans}
-    for start, end in sorted(places, reverse=True):
-        text = text[:start] + json.dumps(places[start, end], ensure_ascii=False) + text[end:]
-    return text
 
 
 def _hashed(text: str) -> str:

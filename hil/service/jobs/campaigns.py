@@ -141,6 +141,10 @@ class Campaigns(Jobs[CampaignData]):
         self._begin(number, self._execute(number))
         return campaign
 
+    def given(self, number: int) -> Path:
+        """Where the files are that one of this service was made from."""
+        return self._records.folder_of(number) / _GIVEN
+
     async def cancel(self, number: int) -> bool:
         """End one: what is under way is awaited and kept; asked twice, it is not. False if it is over."""
         process = self._processes.get(number)

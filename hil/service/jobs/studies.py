@@ -6,19 +6,26 @@ One that was under way when the service ended is interrupted: it can be asked fo
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import datetime
+import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from hil.api_schemas.study import StudyData, StudyKind
-from hil.app.requests import DiagnoseRequest, IdentifyRequest
+from hil.app.requests import AutotuneRequest, DiagnoseRequest, IdentifyRequest, TuneRequest
+from hil.app.worker.job_feedback import PROGRESS
 from hil.core.errors import HilError
 from hil.service.jobs.job_repository import kill_left
 from hil.service.jobs.jobs import Jobs
 from hil.service.jobs.shared_results import SharedResults
 
 _LAST_WORDS_S = 20.0
+_TUNED_WITHIN_S = 90.0  # an interrupted tuning writes its report, a run its end steps
+
+
+StudyRequest = IdentifyRequest | DiagnoseRequest | TuneRequest | AutotuneRequest
 
 
 @dataclass(frozen=True)
@@ -30,6 +37,8 @@ class StudyAsked:
     recordings: list[int]
     model: str
     by: str
+    plan: str = ""
+    bench: str = ""
 
 
 class Studies(Jobs[StudyData]):
@@ -54,7 +63,7 @@ class Studies(Jobs[StudyData]):
     def add(
         self,
         asked: StudyAsked,
-        request: IdentifyRequest | DiagnoseRequest,
+        request: StudyRequest,
         within_s: float,
     ) -> StudyData:
         """Have one executed in its turn.
@@ -76,6 +85,8 @@ class Studies(Jobs[StudyData]):
             runs=asked.runs,
             recordings=asked.recordings,
             model=asked.model,
+            plan=asked.plan,
+            bench=asked.bench,
             requested_by=asked.by,
             asked_at=datetime.datetime.now(datetime.UTC),
         )
@@ -83,6 +94,17 @@ class Studies(Jobs[StudyData]):
         placed = replace(request, out=self.results(number).resolve())
         self._begin(number, self._execute(number, placed, within_s))
         return study
+
+    def plans_folder(self) -> Path:
+        """Where sequences of tunings are kept."""
+        return self._records.folder_of(0).parent / "sequences"
+
+    def progress_of(self, number: int) -> dict[str, Any]:
+        """What one of this service has reported while it works; {} where nothing is known."""
+        with contextlib.suppress(OSError, ValueError):
+            found: dict[str, Any] = json.loads((self._records.folder_of(number) / PROGRESS).read_bytes())
+            return found
+        return {}
 
     async def cancel(self, number: int) -> bool:
         """End one; what a diagnosis knows by then it writes down. False if it is over."""
@@ -92,12 +114,12 @@ class Studies(Jobs[StudyData]):
             self._end(number, "cancelled", "cancelled")
         return found
 
-    async def _execute(
-        self, number: int, request: IdentifyRequest | DiagnoseRequest, within_s: float
-    ) -> None:
+    async def _execute(self, number: int, request: StudyRequest, within_s: float) -> None:
         try:
             self._records.change(number, state="running")
-            async with self._process(number, request, _LAST_WORDS_S) as process:
+            tunes = isinstance(request, TuneRequest | AutotuneRequest)
+            last_words_s = _TUNED_WITHIN_S if tunes else _LAST_WORDS_S
+            async with self._process(number, request, last_words_s) as process:
                 code, reason = await asyncio.wait_for(process.over(), within_s)
             self._end(number, *(("ended", "") if code == 0 else ("failed", reason)))
         except TimeoutError:

@@ -1,9 +1,8 @@
-"""Controllers drafted and designed for a model, and identifications to be drawn with their intervals."""
+"""Controllers drafted and designed for a model."""
 
 from __future__ import annotations
 
 import functools
-import json
 from pathlib import Path
 from typing import Any
 
@@ -11,19 +10,17 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.control_design import DesignSpec, Draft, Drafts, Margins, design
-from hil.analysis.frequency_response import FrequencyResponse, frf_from_csv
 from hil.core.controller import Controller, controller_to_toml
-from hil.core.errors import BadInputError, HilError
-from hil.core.files import read_text
-from hil.core.model import Model, load_model, parameter_unit
+from hil.core.errors import HilError
+from hil.core.model import load_model
 from hil.fmu.axle import Axle
 from hil.service.worker_pool.drawn_numbers import number, numbers
 
 _KEPT = 4  # models that stay prepared
 _SHOWN_HZ = (0.1, 100.0)
 _EACH = 3  # of the frequencies that are drawn
-_SPEEDS_KM_H = (0.0, 20.0)
-_STEP_NM = 326.0  # of the paper's and the acceptance plan's steps
+SPEEDS_KM_H = (0.0, 20.0)
+STEP_NM = 326.0  # of the paper's and the acceptance plan's steps
 _BEFORE, _AFTER = 100, 1400  # milliseconds
 _EVERY = 4  # of which is drawn: the response is slower by far
 
@@ -34,8 +31,8 @@ def draft(model: str, **chosen: Any) -> dict[str, Any]:
     Raises:
         BadInputError: the model cannot be designed for, or a value is out of range.
     """
-    drafts = _drafts(model)
-    found = drafts.draft(_spec(chosen))
+    drafts = drafts_of(model)
+    found = drafts.draft(spec_of(chosen))
     shown = (drafts.frequency_hz >= _SHOWN_HZ[0]) & (drafts.frequency_hz <= _SHOWN_HZ[1])
     loops = {"pi": found.pi_loop[shown][::_EACH], "chosen": found.loop[shown][::_EACH]}
     steps, why_not = _steps(drafts, found)
@@ -51,10 +48,10 @@ def draft(model: str, **chosen: Any) -> dict[str, Any]:
             }
             for name, loop in loops.items()
         ],
-        "margins": _margins(found.margins),
+        "margins": margin_fields(found.margins),
         "unstable": found.unstable,
         "resonance_hz": drafts.plant.resonance_hz,
-        "step_nm": _STEP_NM,
+        "step_nm": STEP_NM,
         "time_s": time_s.tolist(),
         "steps": steps,
         "steps_why_not": why_not,
@@ -68,10 +65,10 @@ def designed(model: str, **chosen: Any) -> dict[str, Any]:
     Raises:
         BadInputError: as of `hil design`; an unstable loop gives no controller.
     """
-    found = design(load_model(Path(model)), _spec(chosen))
+    found = design(load_model(Path(model)), spec_of(chosen))
     return {
         "controller": controller_to_toml(found.controller),
-        "margins": _margins(found.loop(found.chosen).margins),
+        "margins": margin_fields(found.loop(found.chosen).margins),
         "stable_share": found.robustness.stable_share,
         "worst_sensitivity_peak": number(found.robustness.sensitivity_peak),
         "source": found.robustness.source,
@@ -81,32 +78,38 @@ def designed(model: str, **chosen: Any) -> dict[str, Any]:
 
 
 @functools.lru_cache(_KEPT)
-def _drafts(model: str) -> Drafts:
+def drafts_of(model: str) -> Drafts:
+    """A model file, prepared for drafts.
+
+    Raises:
+        BadInputError: the model cannot be designed for.
+    """
     return Drafts(load_model(Path(model)))
 
 
-def _spec(chosen: dict[str, Any]) -> DesignSpec:
+def spec_of(chosen: dict[str, Any]) -> DesignSpec:
+    """Fields of `DraftWanted` as a design has them."""
     notch_hz, name = chosen.pop("notch_hz", None), chosen.pop("name", None)
     return DesignSpec(**chosen, notch_hz=notch_hz, name=name or "")
 
 
 def _steps(drafts: Drafts, found: Draft) -> tuple[list[dict[str, Any]], str]:
     try:
-        return [_step(drafts, found.controller, speed) for speed in _SPEEDS_KM_H], ""
+        return [_step(drafts, found.controller, speed) for speed in SPEEDS_KM_H], ""
     except HilError as error:  # the loops can be looked at all the same
         return [], error.what
 
 
 def _step(drafts: Drafts, controller: Controller, speed_km_h: float) -> dict[str, Any]:
     axle = Axle(drafts.chain, controller, drafts.chain.wheel_radius_m, speed_km_h / 3.6)
-    given = axle.play(np.r_[np.zeros(_BEFORE), np.full(_AFTER, _STEP_NM)])
+    given = axle.play(np.r_[np.zeros(_BEFORE), np.full(_AFTER, STEP_NM)])
     torque: npt.NDArray[np.float64] = given["shaft_torque_nm"]
     peak = float(np.max(torque))
     return {
         "speed_km_h": speed_km_h,
         "shaft_torque_nm": numbers(torque[::_EVERY]),
         "peak_shaft_torque_nm": number(peak),
-        "overshoot_shaft_torque_nm": number(max(0.0, peak - _STEP_NM)),
+        "overshoot_shaft_torque_nm": number(max(0.0, peak - STEP_NM)),
     }
 
 
@@ -116,83 +119,10 @@ def _fitted_note(drafts: Drafts) -> list[str]:
     return ["steps are those of the three-inertia chain that is nearest to the model's functions"]
 
 
-def _margins(found: Margins) -> dict[str, Any]:
+def margin_fields(found: Margins) -> dict[str, Any]:
+    """Fields of `MarginData`."""
     names = (
         "gain_margin_db", "gain_margin_hz", "phase_margin_deg", "phase_margin_hz", "delay_margin_s",
         "sensitivity_peak", "sensitivity_peak_hz", "comfort_peak",
     )  # fmt: skip
     return {**{name: number(getattr(found, name)) for name in names}, "stable": found.stable}
-
-
-_IN_95 = 1.959964  # standard deviations
-
-
-def fitted(folder: str) -> dict[str, Any]:
-    """Fields of `IdentificationData` from what `hil identify` wrote.
-
-    Raises:
-        BadInputError: a file is not there, or cannot be read.
-    """
-    place = Path(folder)
-    summary = json.loads(read_text(place / "identification.json"))
-    frf, model = frf_from_csv(place / "frf.csv"), load_model(place / "model.toml")
-    return {
-        "verdict": summary["verdict"],
-        "warnings": summary["warnings"],
-        "resonance_hz": summary["resonance_hz"],
-        "chain": summary["chain"],
-        "frequency_hz": numbers(frf.frequency_hz),
-        "outputs": [_output(frf, model, name) for name in frf.outputs],
-        "parameters": _parameters(summary),
-    }
-
-
-def _output(frf: FrequencyResponse, model: Model, name: str) -> dict[str, Any]:
-    if name not in model.transfer_functions:
-        raise BadInputError(f"the model has no '{name}'", where="model.toml")
-    measured, fit = frf.of(name), model.transfer_functions[name].response(frf.frequency_hz)
-    return {
-        "channel": name,
-        "gain_db": numbers(20 * np.log10(np.abs(measured))),
-        "phase_deg": numbers(np.degrees(np.unwrap(np.angle(measured)))),
-        **_reach(measured, frf.deviation_of(name)),
-        "coherence": numbers(frf.coherence[frf.outputs.index(name)]),
-        "fit_gain_db": numbers(20 * np.log10(np.abs(fit))),
-        "fit_phase_deg": numbers(np.degrees(np.unwrap(np.angle(fit)))),
-    }
-
-
-def _reach(measured: npt.NDArray[np.complex128], deviation: npt.NDArray[np.float64]) -> dict[str, Any]:
-    """95 % intervals of gain and phase, of circular complex errors whose radial part has half their power
-    (Pintelon and Schoukens, System Identification, 2nd ed., section 2.4)."""
-    gain, phase = np.abs(measured), np.degrees(np.unwrap(np.angle(measured)))
-    radial = _IN_95 * deviation / np.sqrt(2)
-    sideways = np.degrees(np.arcsin(np.minimum(1.0, radial / gain)))
-    lower = np.where(radial < gain, gain - radial, np.nan)
-    return {
-        "gain_lower_db": numbers(20 * np.log10(lower)),
-        "gain_upper_db": numbers(20 * np.log10(gain + radial)),
-        "phase_lower_deg": numbers(phase - sideways),
-        "phase_upper_deg": numbers(phase + sideways),
-    }
-
-
-def _parameters(summary: dict[str, Any]) -> list[dict[str, Any]]:
-    """Of the chain that was chosen; without one, the dead time alone is a physical number."""
-    chosen = [one for one in summary["chains"] if one["chosen"]]
-    if summary["chain"] is None or not chosen:
-        dead = summary["dead_time_s"]
-        return [_parameter("torque_delay", dead["value"], dead["standard_error"])]
-    errors = {"torque_delay": summary["dead_time_s"]["standard_error"]} | (chosen[0]["standard_errors"] or {})
-    return [_parameter(name, value, errors.get(name)) for name, value in chosen[0]["parameters"].items()]
-
-
-def _parameter(name: str, value: float, error: float | None) -> dict[str, Any]:
-    reach = None if error is None else _IN_95 * error
-    return {
-        "name": name,
-        "unit": parameter_unit(name),
-        "value": value,
-        "lower": None if reach is None else value - reach,
-        "upper": None if reach is None else value + reach,
-    }

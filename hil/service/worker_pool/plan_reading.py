@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from hil.core.files.toml_file import parse_toml
 from hil.core.model import model_from_dict
 from hil.execution.data_folder import files_of
 from test_plans import Plan, pictures_of, plan_from_text
+from test_plans.yaml_document import read_yaml
 
 
 @dataclass(frozen=True)
@@ -126,3 +128,14 @@ def controller(name: str, text: str) -> dict[str, Any]:
 def schema(kind: str) -> dict[str, Any]:
     """As `hil schema` prints it."""
     return SCHEMAS[kind]()
+
+
+def renamed(text: str, name: str) -> str:
+    """A plan's text with another name, which stands in its title too."""
+    document = read_yaml(text, name)
+    content = document.value if isinstance(document.value, dict) else {}
+    changes = {("name",): name, ("title",): f"{content.get('title', '')}, {name}"}
+    places = {document.spans[path]: value for path, value in changes.items() if path in document.spans}
+    for start, end in sorted(places, reverse=True):
+        text = text[:start] + json.dumps(places[start, end], ensure_ascii=False) + text[end:]
+    return text

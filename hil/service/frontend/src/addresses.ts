@@ -3,17 +3,17 @@
 import { t } from "./i18n/text.ts";
 
 export type Place =
-  | { view: "benches" | "runs" | "compare" | "trends" | "plans" | "models" | "controllers" | "bench-files" | "design" | "recordings" | "identifications" | "diagnoses" | "campaigns" | "audit" | "settings" }
+  | { view: "benches" | "runs" | "compare" | "trends" | "plans" | "models" | "controllers" | "bench-files" | "design" | "recordings" | "identifications" | "diagnoses" | "tunings" | "campaigns" | "audit" | "settings" }
   | { view: "bench" | "panel"; bench: string }
   | { view: "wall"; bench: string | null } // null: all benches
   | { view: "run"; run: number }
   | { view: "plan" | "model" | "controller" | "bench-file"; name: string }
-  | { view: "recording" | "identification" | "diagnosis" | "campaign"; id: number }
+  | { view: "recording" | "identification" | "diagnosis" | "tuning" | "campaign"; id: number }
   | { view: "missing"; path: string };
 
-const LISTS = ["benches", "runs", "compare", "trends", "plans", "models", "controllers", "bench-files", "design", "recordings", "identifications", "diagnoses", "campaigns", "audit", "settings"] as const;
+const LISTS = ["benches", "runs", "compare", "trends", "plans", "models", "controllers", "bench-files", "design", "recordings", "identifications", "diagnoses", "tunings", "campaigns", "audit", "settings"] as const;
 const NAMED = { plans: "plan", models: "model", controllers: "controller", "bench-files": "bench-file" } as const;
-const NUMBERED = { recordings: "recording", identifications: "identification", diagnoses: "diagnosis", campaigns: "campaign" } as const;
+const NUMBERED = { recordings: "recording", identifications: "identification", diagnoses: "diagnosis", tunings: "tuning", campaigns: "campaign" } as const;
 
 export function placeOf(path: string): Place {
   const missing: Place = { view: "missing", path };
@@ -70,13 +70,14 @@ export const to = {
   recording: (id: number): string => `/recordings/${id}`,
   identification: (id: number): string => `/identifications/${id}`,
   diagnosis: (id: number): string => `/diagnoses/${id}`,
+  tuning: (id: number): string => `/tunings/${id}`,
   campaign: (id: number): string => `/campaigns/${id}`,
   compare: (first: number, other: number): string => `/compare?runs=${first},${other}`,
 };
 
 const TITLES: Record<(typeof LISTS)[number], string> = {
   benches: t("Benches"), runs: t("Runs"), compare: t("Compare runs"), trends: t("Trends"), plans: t("Plans"), models: t("Models"), controllers: t("Controllers"), "bench-files": t("Bench files"),
-  design: t("Design a controller"), recordings: t("Recordings"), identifications: t("Identifications"), diagnoses: t("Diagnoses"), campaigns: t("Campaigns"), audit: t("Audit log"), settings: t("Settings"),
+  design: t("Design a controller"), recordings: t("Recordings"), identifications: t("Identifications"), diagnoses: t("Diagnoses"), tunings: t("Tune a controller"), campaigns: t("Campaigns"), audit: t("Audit log"), settings: t("Settings"),
 };
 
 export function titleOf(place: Place): string {
@@ -92,6 +93,7 @@ export function titleOf(place: Place): string {
     case "recording": return t("Recording {number}", { number: place.id });
     case "identification": return t("Identification {number}", { number: place.id });
     case "diagnosis": return t("Diagnosis {number}", { number: place.id });
+    case "tuning": return t("Tuning {number}", { number: place.id });
     case "campaign": return t("Campaign {number}", { number: place.id });
     case "missing": return t("No such page");
     default: return TITLES[place.view];

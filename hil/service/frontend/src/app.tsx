@@ -56,7 +56,7 @@ export function App(): JSX.Element {
 }
 
 function Menu({ place }: { place: Place }): JSX.Element {
-  const of = { bench: "benches", panel: "benches", run: "runs", plan: "plans", model: "models", controller: "controllers", "bench-file": "benches", "bench-files": "benches", recording: "recordings", identification: "identifications", diagnosis: "diagnoses", campaign: "campaigns" } as Record<string, string>;
+  const of = { bench: "benches", panel: "benches", run: "runs", plan: "plans", model: "models", controller: "controllers", "bench-file": "benches", "bench-files": "benches", recording: "recordings", identification: "identifications", diagnosis: "diagnoses", tuning: "tunings", campaign: "campaigns" } as Record<string, string>;
   const list = of[place.view] ?? place.view;
   useEffect(() => document.querySelector(".menu [aria-current]")?.scrollIntoView({ block: "nearest", inline: "nearest" }), [list]); // of a narrow screen
   return (

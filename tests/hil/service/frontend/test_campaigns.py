@@ -83,6 +83,18 @@ def test_distributions_what_decides_and_worst_cars_are_shown(page: playwright.Pa
     refuse_hard_to_use(page)
 
 
+def test_a_worst_car_is_run_on_a_simulated_bench(page: playwright.Page, there: Served) -> None:
+    to(page, there, "campaigns/1")
+    row = region(page, "Worst cars").locator("tbody tr").first
+    number, margin = row.locator("td").nth(0).inner_text(), row.locator("td").nth(2).inner_text()
+    assert margin
+    row.get_by_role("button", name=f"Run car {number} on a simulated bench").click()
+    expect(heading(page, re.compile(f"campaign-1-car-{number} (pass|fail)"))).to_be_visible()
+    expect(page.locator("main")).to_contain_text(f"campaign-1-car-{number}")
+    to(page, there, "campaigns/1")
+    expect(row.get_by_role("link", name="run 1", exact=True)).to_be_visible()
+
+
 def test_a_campaign_is_begun_by_the_form_and_removed(page: playwright.Page, there: Served) -> None:
     there.give("short", PLAN)
     to(page, there, "campaigns")

@@ -96,6 +96,36 @@ def test_drafts_are_laid_over_each_other_and_stand_in_the_address(
     expect(figures.locator("thead")).not_to_contain_text("lead")
 
 
+def test_cars_follow_when_the_hand_rests_and_segments_have_their_margins(
+    page: playwright.Page, there: Served
+) -> None:
+    to(page, there, "design?model=three_inertia")
+    cars = region(page, "A lead on drawn cars")
+    expect(cars).to_contain_text("40 cars: vehicle_inertia ±0.1")
+    expect(cars.locator("thead")).to_contain_text("worst of 40")
+    for at in range(2):  # the worst car is drawn in its own colour
+        expect_drawn(page.locator("figure.plot").nth(at), "gain", "measured")
+    choice(page, "Cars drawn around the model").select_option("20")
+    expect(cars).to_contain_text("20 cars: ")
+    page.get_by_text("What differs from car to car").click()
+    page.get_by_label("dead time ± ms").fill("6")
+    page.get_by_label("dead time ± ms").press("Enter")
+    expect(cars).to_contain_text("20 cars: dead time ±6 ms")
+    expect(page).to_have_url(re.compile(r"cars=20&spread=dead_time_s:6"))
+    before = cars.locator("table").inner_text()
+    page.locator("#lead_deg").fill("20")
+    expect(cars.locator("table")).not_to_have_text(before, use_inner_text=True)
+    segments = region(page, "Margins in the segments of a plan")
+    choice(page, "Plan").select_option("take_off_on_low_friction")
+    expect(segments.locator("tbody")).to_contain_text("friction 0.05, tyres slide")
+    expect(segments.locator("thead")).to_contain_text("with A lead")
+    refuse_hard_to_use(page)
+    page.reload()
+    expect(segments.locator("tbody")).to_contain_text("take_off_ice")
+    choice(page, "Cars drawn around the model").select_option("0")
+    expect(cars).to_contain_text("No cars are drawn.")
+
+
 def test_a_viewer_designs_nothing(page: playwright.Page, tmp_path: Path) -> None:
     database = environment_of(tmp_path / "data")["HIL_DATABASE"]
     made = make_token(tmp_path / "data", database, "anna", "viewer")

@@ -58,6 +58,11 @@ def test_a_model_is_identified_given_and_designed_for(there: tuple[Served, int])
     assert study.state == "ended", study.reason
     found = client.identification(study.id)
     assert {one.channel for one in found.outputs} >= {"motor_speed_rad_s", "shaft_torque_nm"}
+    assert [one.order for one in found.orders if one.integrator] == [2, 3, 4, 5, 6, 7]
+    assert sum(one.chosen for one in found.orders) == 1
+    assert {one.model for one in found.orders if one.model} <= set(study.files)
+    assert {one.model for one in found.chains} <= set(study.files)
+    assert all(one.misfit.keys() == {o.channel for o in found.outputs} for one in found.orders if one.model)
     assert {len(found.frequency_hz)} == {len(one.coherence) for one in found.outputs}
     assert found.resonance_hz == pytest.approx(11.4, rel=0.05)
     ratio = next(one for one in found.parameters if one.name == "gear_ratio")

@@ -19,9 +19,21 @@ export interface Loop {
   imaginary: Values;
 }
 
-export function NyquistPlot({ loops, label }: { loops: Loop[]; label: string }): JSX.Element {
-  const place = useRef<HTMLDivElement>(null), plot = useRef<uPlot | null>(null), now = useRef(loops);
-  now.current = loops;
+// The same loop on other cars: faint, and the worst of them dashed.
+export interface Cloud {
+  role: string;
+  cars: { real: Values; imaginary: Values }[];
+  worst: number;
+}
+
+interface Shown {
+  loops: Loop[];
+  cloud: Cloud | null;
+}
+
+export function NyquistPlot({ loops, cloud = null, label }: { loops: Loop[]; cloud?: Cloud | null; label: string }): JSX.Element {
+  const place = useRef<HTMLDivElement>(null), plot = useRef<uPlot | null>(null), now = useRef<Shown>({ loops, cloud });
+  now.current = { loops, cloud };
   useEffect(() => {
     const element = place.current as HTMLDivElement;
     const made = make(element, now);
@@ -29,17 +41,17 @@ export function NyquistPlot({ loops, label }: { loops: Loop[]; label: string }):
     const stops = [coloured.subscribe(() => made.redraw(false, true)), onWidth(element, (width) => made.setSize({ width, height: HEIGHT }))];
     return () => { stops.forEach((stop) => stop()); made.destroy(); plot.current = null; };
   }, []);
-  useEffect(() => plot.current?.redraw(false, false), [loops]);
+  useEffect(() => plot.current?.redraw(false, false), [loops, cloud]);
   return (
     <figure class="plot">
-      <figcaption><b>{t("Nyquist curve")}</b>{loops.map((one) => <span class="chip" key={one.name}><span class={`swatch ${one.role}`} />{one.name}</span>)}</figcaption>
+      <figcaption><b>{t("Nyquist curve")}</b>{loops.map((one) => <span class="chip" key={one.name}><span class={`swatch ${one.role}`} />{one.name}</span>)}{cloud ? <span class="chip"><span class="swatch measured" />{t("worst car")}</span> : null}</figcaption>
       <div class="canvas" ref={place} role="img" aria-label={label} />
     </figure>
   );
 }
 
 // The library makes the axes; curves that turn back are drawn here.
-function make(element: HTMLElement, now: { current: Loop[] }): uPlot {
+function make(element: HTMLElement, now: { current: Shown }): uPlot {
   const half = (plot: uPlot): number => (0.5 * (RIGHT - LEFT) * plot.bbox.height) / Math.max(1, plot.bbox.width);
   return new uPlot({
     width: Math.max(200, element.clientWidth), height: HEIGHT, legend: { show: false },
@@ -51,7 +63,7 @@ function make(element: HTMLElement, now: { current: Loop[] }): uPlot {
   }, [[0, 1], [0, 1]], element);
 }
 
-function draw(plot: uPlot, loops: Loop[]): void {
+function draw(plot: uPlot, { loops, cloud }: Shown): void {
   const { ctx: pen, bbox: box } = plot, one = devicePixelRatio;
   pen.save();
   pen.beginPath();
@@ -60,11 +72,25 @@ function draw(plot: uPlot, loops: Loop[]): void {
   pen.lineWidth = 1.4 * one;
   circle(plot, 0, 1, "grid", []);
   circle(plot, -1, 1 / LARGEST_SENSITIVITY, "series-limit", [6 * one, 4 * one]);
+  if (cloud) drawCloud(plot, cloud);
   pen.lineWidth = 1.8 * one;
   for (const { real, imaginary, role } of loops) curve(plot, real, imaginary, `series-${role}`);
   pen.fillStyle = colour("series-limit");
   pen.fillRect(plot.valToPos(-1, "x", true) - 4 * one, plot.valToPos(0, "y", true) - 4 * one, 8 * one, 8 * one);
   pen.restore();
+}
+
+function drawCloud(plot: uPlot, { role, cars, worst }: Cloud): void {
+  const pen = plot.ctx, one = devicePixelRatio, marked = cars[worst];
+  pen.lineWidth = one;
+  pen.globalAlpha = Math.max(0.12, 0.5 / Math.sqrt(cars.length));
+  for (const { real, imaginary } of cars) curve(plot, real, imaginary, `series-${role}`);
+  pen.globalAlpha = 1;
+  if (!marked) return;
+  pen.lineWidth = 1.8 * one;
+  pen.setLineDash([5 * one, 3 * one]);
+  curve(plot, marked.real, marked.imaginary, "series-measured");
+  pen.setLineDash([]);
 }
 
 function circle(plot: uPlot, around: number, radius: number, role: string, dash: number[]): void {

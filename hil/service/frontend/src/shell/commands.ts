@@ -12,7 +12,7 @@ import { signOut } from "./sign-in.tsx";
 
 export const MENU = [
   ["benches", t("Benches"), "Benches"], ["runs", t("Runs"), "Runs"], ["compare", t("Compare"), "Compare"], ["trends", t("Trends"), "Trends"], ["plans", t("Plans"), "Plans"], ["models", t("Models"), "Models"],
-  ["controllers", t("Controllers"), "Controllers"], ["design", t("Design"), "Design"], ["recordings", t("Recordings"), "Recordings"], ["identifications", t("Identify"), "Identify"], ["diagnoses", t("Diagnose"), "Diagnose"], ["campaigns", t("Campaigns"), "Campaigns"],
+  ["controllers", t("Controllers"), "Controllers"], ["design", t("Design"), "Design"], ["recordings", t("Recordings"), "Recordings"], ["identifications", t("Identify"), "Identify"], ["diagnoses", t("Diagnose"), "Diagnose"], ["tunings", t("Tune"), "Tune"], ["campaigns", t("Campaigns"), "Campaigns"],
   ["audit", t("Audit"), "Audit"], ["settings", t("Settings"), "Settings"],
 ] as const;
 const MORE = [["bench-files", t("Bench files"), "Bench files"]] as const; // beside the menu, which is full

@@ -19,6 +19,8 @@ import { RunView } from "./runs/run.tsx";
 import { Runs } from "./runs/runs.tsx";
 import { Settings } from "./settings.tsx";
 import { Diagnoses, DiagnosisView } from "./studies/diagnoses.tsx";
+import { TuningView } from "./tuning/tuning.tsx";
+import { Tunings } from "./tuning/tunings.tsx";
 import { Wall } from "./wall.tsx";
 import { TrendsView } from "./trends/trends-view.tsx";
 import { Identifications, IdentificationView } from "./studies/identifications.tsx";
@@ -48,6 +50,8 @@ export function View({ place }: { place: Place }): JSX.Element {
     case "identification": return <IdentificationView key={place.id} id={place.id} />;
     case "diagnoses": return <Diagnoses />;
     case "diagnosis": return <DiagnosisView key={place.id} id={place.id} />;
+    case "tunings": return <Tunings />;
+    case "tuning": return <TuningView key={place.id} id={place.id} />;
     case "campaigns": return <Campaigns />;
     case "campaign": return <CampaignView key={place.id} id={place.id} />;
     case "audit": return <Audit />;

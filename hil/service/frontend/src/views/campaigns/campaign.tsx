@@ -37,7 +37,7 @@ function Found({ campaign }: { campaign: Campaign }): JSX.Element {
       <div class="row"><CampaignActions campaign={campaign} onRemoved={() => go(to.list("campaigns"))} /></div>
       <Section title={t("Simulated")} label="progress"><Progress of={campaign} /></Section>
       <Section title={t("Share that passes")} label="shares"><Shares of={campaign} /></Section>
-      {done ? <Loaded of={findings} what={t("distributions")}>{(found) => <Findings of={found} />}</Loaded> : null}
+      {done ? <Loaded of={findings} what={t("distributions")}>{(found) => <Findings of={found} campaign={campaign} />}</Loaded> : null}
       {files.length ? <Section title={t("Files")} label="files"><p class="links">{files.map((name) => <FileLink key={name} name={name} href={`${API}/campaigns/${campaign.id}/files/${encodeURIComponent(name)}`}>{NAMES[name] ?? name}</FileLink>)}</p></Section> : null}
     </>
   );

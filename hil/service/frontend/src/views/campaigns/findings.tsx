@@ -2,20 +2,22 @@
 
 import type { JSX } from "preact";
 import { useMemo, useState } from "preact/hooks";
-import type { CampaignFindings } from "../../api/types.ts";
+import type { Campaign, CampaignFindings } from "../../api/types.ts";
 import { figure, limitText, percent } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
 import { t, tx } from "../../i18n/text.ts";
 import { CurvePlot, type Curve } from "../../plot/curve-plot.tsx";
 import { roleOf } from "../../plot/frame.ts";
+import { useMay } from "../../session.ts";
 import { Badge, inWords, Scroll, Section } from "../../ui/parts.tsx";
+import { benchOf, RunCar, useCarRuns } from "./run-car.tsx";
 
 type Controller = CampaignFindings["controllers"][number];
 type Criterion = Controller["criteria"][number];
 
 const nameOf = (one: Controller): string => (one.controller ? inWords(one.controller) : t("the plan's own"));
 
-export function Findings({ of }: { of: CampaignFindings }): JSX.Element {
+export function Findings({ of, campaign }: { of: CampaignFindings; campaign: Campaign }): JSX.Element {
   const { controllers } = of, ids = controllers[0]?.criteria.map((one) => one.id) ?? [];
   const [chosen, setChosen] = useState("");
   const id = ids.includes(chosen) ? chosen : mostFailed(controllers);
@@ -25,7 +27,7 @@ export function Findings({ of }: { of: CampaignFindings }): JSX.Element {
       <Section title={t("Criteria")} label="criteria"><Criteria controllers={controllers} chosen={id} onChoose={setChosen} /></Section>
       <Section title={t("Distribution of {criterion}", { criterion: id })} label="distribution"><Distribution controllers={controllers} id={id} /></Section>
       <Section title={t("What decides {criterion}", { criterion: id })} label="decides"><Decides controllers={controllers} id={id} units={of.inputs} /></Section>
-      <Section title={t("Worst cars")} label="worst"><Worst of={of} /></Section>
+      <Section title={t("Worst cars")} label="worst"><Worst of={of} campaign={campaign} /></Section>
       {errors.length ? <Section title={t("What went wrong")} label="errors"><ul>{errors.map(([why, count]) => <li key={why}>{tx("{count} with: {why}", { count, why: <English>{why}</English> })}</li>)}</ul></Section> : null}
     </>
   );
@@ -91,14 +93,15 @@ function Correlation({ value }: { value: number | null }): JSX.Element {
 
 const SHOWN = 10;
 
-function Worst({ of: { controllers, inputs } }: { of: CampaignFindings }): JSX.Element {
+function Worst({ of: { controllers, inputs }, campaign: { id, place } }: { of: CampaignFindings; campaign: Campaign }): JSX.Element {
+  const may = useMay(), runs = useCarRuns(id), runnable = may("engineer") && !place;
   const all = controllers.flatMap((controller) => controller.worst.map((one) => ({ controller, one }))).sort((a, b) => a.one.margin - b.one.margin).slice(0, SHOWN);
   const names = Object.keys(inputs);
   if (!all.length) return <p class="quiet">{t("No simulation has a margin.")}</p>;
   return (
     <Scroll label={t("Worst cars")}><table>
-      <thead><tr><th scope="col" class="number">{t("simulation")}</th><th scope="col">{t("controller")}</th><th scope="col" class="number">{t("margin")}</th><th scope="col">{t("verdict")}</th><th scope="col">{t("binding criterion")}</th>{names.map((name) => <th scope="col" class="number" key={name}>{inputs[name] && inputs[name] !== "1" ? t("{name} in {unit}", { name, unit: inputs[name] }) : name}</th>)}</tr></thead>
-      <tbody>{all.map(({ controller, one }) => <tr key={`${controller.controller} ${one.simulation}`}><td class="number">{one.simulation}</td><td>{nameOf(controller)}</td><td class="number">{percent(one.margin, 1)}</td><td><Badge kind={one.verdict} /></td><td>{one.binding}</td>{names.map((name) => <td class="number" key={name}>{figure(one.inputs[name])}</td>)}</tr>)}</tbody>
+      <thead><tr><th scope="col" class="number">{t("simulation")}</th><th scope="col">{t("controller")}</th><th scope="col" class="number">{t("margin")}</th><th scope="col">{t("verdict")}</th><th scope="col">{t("binding criterion")}</th>{runnable ? <th scope="col">{t("on a simulated bench")}</th> : null}{names.map((name) => <th scope="col" class="number" key={name}>{inputs[name] && inputs[name] !== "1" ? t("{name} in {unit}", { name, unit: inputs[name] }) : name}</th>)}</tr></thead>
+      <tbody>{all.map(({ controller, one }) => <tr key={`${controller.controller} ${one.simulation}`}><td class="number">{one.simulation}</td><td>{nameOf(controller)}</td><td class="number">{percent(one.margin, 1)}</td><td><Badge kind={one.verdict} /></td><td>{one.binding}</td>{runnable ? <td><RunCar campaign={id} simulation={one.simulation} run={runs.get(benchOf(id, one.simulation))} /></td> : null}{names.map((name) => <td class="number" key={name}>{figure(one.inputs[name])}</td>)}</tr>)}</tbody>
     </table></Scroll>
   );
 }

@@ -2,11 +2,11 @@
 
 import type { JSX } from "preact";
 import { useMemo } from "preact/hooks";
-import type { DraftData } from "../../api/types.ts";
+import type { CloudData, DraftData } from "../../api/types.ts";
 import { figure } from "../../format.ts";
 import { t, tx } from "../../i18n/text.ts";
 import { CurvePlot, type Curve } from "../../plot/curve-plot.tsx";
-import { LARGEST_SENSITIVITY, NyquistPlot } from "../../plot/nyquist-plot.tsx";
+import { LARGEST_SENSITIVITY, NyquistPlot, type Cloud } from "../../plot/nyquist-plot.tsx";
 import type { Drawn } from "./use-drafts.ts";
 
 export interface NamedDraft {
@@ -24,20 +24,28 @@ interface Found {
 const BAND_HZ = [8, 20] as const;
 const HIGHEST_SHOWN = 6; // of |S|: an unstable loop would hide all others
 
-export function DraftPlots({ drafts }: { drafts: NamedDraft[] }): JSX.Element {
+// Cars around the draft of this role.
+export interface Around {
+  role: string;
+  data: CloudData;
+}
+
+export function DraftPlots({ drafts, around }: { drafts: NamedDraft[]; around: Around | null }): JSX.Element {
   const key = drafts.map(({ drawn }) => drawn.found);
   const found = useMemo(() => drafts.flatMap(({ name, role, drawn }) => (drawn.found ? [{ name, role, data: drawn.found }] : [])), [...key, ...Array<null>(4 - key.length).fill(null), drafts.map(({ name }) => name).join()]);
   const loops = useMemo(() => found.flatMap(loopsOf), [found]);
-  const sensitivities = useMemo(() => found.flatMap(sensitivitiesOf), [found]);
+  const cars = around?.data ?? null, role = around?.role ?? "";
+  const sensitivities = useMemo(() => [...(cars ? carsSensitivities(role, cars) : []), ...found.flatMap(sensitivitiesOf)], [found, cars, role]);
+  const cloud = useMemo((): Cloud | null => (cars ? { role, cars: cars.loops, worst: cars.worst } : null), [cars, role]);
   if (!found.length) return <p class="quiet">{t("Reading the model …")}</p>;
-  const worst = found.map(({ data }) => data.margins.sensitivity_peak ?? 0);
+  const worst = found.map(({ data }) => data.margins.sensitivity_peak ?? 0), all = [...worst, cars?.cars[cars.worst]?.margins.sensitivity_peak ?? 0];
   const margins = found.map(({ name, data }) => t("{name}: gain margin {gain}, phase margin {phase}", { name, gain: figure(data.margins.gain_margin_db, "dB"), phase: figure(data.margins.phase_margin_deg, "°") })).join("; ");
   return (
     <div class="plots">
-      <NyquistPlot loops={loops} label={t("Nyquist curve of the open loop. {margins}", { margins })} />
+      <NyquistPlot loops={loops} cloud={cloud} label={t("Nyquist curve of the open loop. {margins}", { margins })} />
       <CurvePlot
         title={t("Sensitivity |S|")} label={t("Sensitivity over frequency: at most {values}", { values: worst.map((one) => figure(one)).join(", ") })} curves={sensitivities}
-        x={{ unit: "Hz", log: true }} y={{ unit: "", low: 0, high: Math.min(HIGHEST_SHOWN, Math.max(1.2 * LARGEST_SENSITIVITY, 1.05 * Math.max(...worst))) }} band={BAND_HZ} limits={[LARGEST_SENSITIVITY]}
+        x={{ unit: "Hz", log: true }} y={{ unit: "", low: 0, high: Math.min(HIGHEST_SHOWN, Math.max(1.2 * LARGEST_SENSITIVITY, 1.05 * Math.max(...all))) }} band={BAND_HZ} limits={[LARGEST_SENSITIVITY]}
       />
       {[0, 1].map((at) => <StepPlot key={at} found={found} at={at} />)}
     </div>
@@ -55,6 +63,14 @@ function loopsOf({ name, role, data }: Found, at: number) {
 function sensitivitiesOf({ name, role, data }: Found, at: number): Curve[] {
   const [pi, chosen] = data.loops, x = data.frequency_hz;
   return [...(pi && at === 0 ? [{ ...WITHOUT, x, y: pi.sensitivity }] : []), ...(chosen ? [{ name, role, x, y: chosen.sensitivity }] : [])];
+}
+
+// What all cars span, and the worst of them.
+function carsSensitivities(role: string, { frequency_hz: x, sensitivity_lower: lower, sensitivity_upper: upper, worst_sensitivity: worst }: CloudData): Curve[] {
+  return [
+    { name: t("all cars"), role, x, y: x.map(() => null), reach: { lower, upper } },
+    { name: t("worst car"), role: "measured", looks: "dashes", x, y: worst },
+  ];
 }
 
 function StepPlot({ found, at }: { found: Found[]; at: number }): JSX.Element | null {

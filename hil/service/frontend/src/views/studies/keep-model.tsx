@@ -22,7 +22,7 @@ export function KeepModel({ study, file, what }: { study: Study; file: string; w
   };
   return (
     <Section title={t("Keep the {what}", { what })} label="keep">
-      <form class="row" onSubmit={(event) => void keep(event)}><NameField value={name} onChange={setName} /><button type="submit" class="main">{t("Save the {what}", { what })}</button></form>
+      <form class="row" onSubmit={(event) => void keep(event)}><NameField value={name} onChange={setName} /><button type="submit" class="main">{t("Save the {what}", { what })}</button><span class="quiet">{file}</span></form>
       <p aria-live="polite">{saved ? tx("Saved as {link}: for <design>design</design> and diagnosis.", { link: <a href={to.model(saved)}>{saved}</a>, design: linkTo(`${to.list("design")}?model=${saved}`) }) : null}</p>
     </Section>
   );

@@ -15,10 +15,10 @@ import { useRecordings } from "../recordings/recordings.tsx";
 
 const AGAIN_MS = 2000;
 const MOST_RUNS = 12;
-export const OVER = [t("ended"), "failed", "cancelled", "interrupted"];
+export const OVER = ["ended", "failed", "cancelled", "interrupted"];
 type Kind = Study["kind"];
 
-const listOf = (kind: Kind) => (kind === "diagnosis" ? "diagnoses" : "identifications");
+const listOf = (kind: Kind) => (kind === "diagnosis" ? "diagnoses" : kind === "identification" ? "identifications" : "tunings");
 const addressOf = (study: Study): string => (study.kind === "diagnosis" ? to.diagnosis(study.id) : to.identification(study.id));
 
 export function StudyList({ kind }: { kind: Kind }): JSX.Element {
@@ -76,15 +76,25 @@ export function StudyPage({ id, kind, children }: { id: number; kind: Kind; chil
   return <Loaded of={study} what={`${kindInWords(kind)} ${id}`}>{(found) => <Found study={found}>{children(found)}</Found>}</Loaded>;
 }
 
+function titleOf({ kind, id: number }: Study): string {
+  if (kind === "diagnosis") return t("Diagnosis {number}", { number });
+  return kind === "identification" ? t("Identification {number}", { number }) : t("Tuning {number}", { number });
+}
+
+function questionOf({ kind, id: number }: Study): string {
+  if (kind === "diagnosis") return t("Remove diagnosis {number} with its files?", { number });
+  return kind === "identification" ? t("Remove identification {number} with its files?", { number }) : t("Remove tuning {number} with its files?", { number });
+}
+
 function Found({ study, children }: { study: Study; children: ComponentChildren }): JSX.Element {
   const may = useMay(), isOver = OVER.includes(study.state), files = study.files ?? [];
   const remove = async () => {
-    if (!confirm(study.kind === "diagnosis" ? t("Remove diagnosis {number} with its files?", { number: study.id }) : t("Remove identification {number} with its files?", { number: study.id }))) return;
+    if (!confirm(questionOf(study))) return;
     if (await attempt(async () => { await ask("DELETE", `/studies/${study.id}`); return true; })) go(to.list(listOf(study.kind)));
   };
   return (
     <>
-      <Heading kind={<a href={to.list(listOf(study.kind))}>{study.kind === "diagnosis" ? t("Diagnoses") : t("Identifications")}</a>}>{study.kind === "diagnosis" ? t("Diagnosis {number}", { number: study.id }) : t("Identification {number}", { number: study.id })} <Badge kind={study.state} /></Heading>
+      <Heading kind={<a href={to.list(listOf(study.kind))}>{study.kind === "diagnosis" ? t("Diagnoses") : study.kind === "identification" ? t("Identifications") : t("Tunings")}</a>}>{titleOf(study)} <Badge kind={study.state} /></Heading>
       <StudyFacts study={study} />
       {may("engineer") && !study.place ? (
         <div class="row">
@@ -117,6 +127,7 @@ function StudyFacts({ study }: { study: Study }): JSX.Element {
     study.runs.length ? [t("runs"), <RunLinks runs={study.runs} />] : null,
     study.recordings?.length ? [t("recordings"), <RecordingLinks recordings={study.recordings} />] : null,
     study.model ? [t("model"), <a href={to.model(study.model)}>{study.model}</a>] : null,
+    study.plan ? [t("plan"), <a href={to.plan(study.plan)}>{study.plan}</a>] : null, study.bench ? [t("bench"), <a href={to.bench(study.bench)}>{study.bench}</a>] : null,
     [t("asked for by"), study.requested_by], [t("asked for"), <Moment at={study.asked_at} />],
     study.ended_at ? [t("ended"), <Moment at={study.ended_at} />] : null,
     study.reason ? [t("reason"), <English>{study.reason}</English>] : null, study.place ? [t("on service"), study.place] : null,
