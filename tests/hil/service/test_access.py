@@ -62,6 +62,10 @@ LEAST = {
     ("PUT", "/plans/{plan}"): "engineer",
     ("DELETE", "/plans/{plan}"): "engineer",
     ("GET", "/kept-apart"): "viewer",
+    ("GET", "/pictures"): "viewer",
+    ("GET", "/pictures/{picture}"): "viewer",
+    ("PUT", "/pictures/{picture}"): "engineer",
+    ("DELETE", "/pictures/{picture}"): "engineer",
     ("GET", "/schemas/{kind}"): "viewer",
     ("POST", "/plan-checks"): "engineer",
     ("POST", "/forecasts"): "operator",
@@ -149,7 +153,7 @@ LEAST = {
 #: Names of things that there are not: who may ask hears 404 or 422, nothing is changed.
 _NONE = {"bench": "none", "plan": "none", "run": "2000000000", "token": "2000000000", "name": "x"}
 _NONE |= {"agent": "0" * 32, "order": "0" * 16, "model": "none", "controller": "none"}
-_NONE |= {"recording": "2000000000", "number": "1"}
+_NONE |= {"recording": "2000000000", "number": "1", "picture": "none.png"}
 _NONE |= {
     "study": "2000000000",
     "campaign": "2000000000",
