@@ -66,7 +66,7 @@ class AutotuningWanted(AutotuningPlanned):
 
 
 class ProgressData(_Data):
-    """What a tuning does now, and what it has said."""
+    """What a tuning does now, and what it has reported."""
 
     text: str = ""
     share: float = 0.0

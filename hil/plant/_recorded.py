@@ -56,7 +56,7 @@ def settled(
     Args:
         first: (3,), what first samples show; a channel that was not recorded follows from others.
         errors: (3,), standard errors of that.
-        unrecorded: (3,), what a torque that nobody recorded may have added before the first sample.
+        unrecorded: (3,), what a torque that was not recorded may have added before the first sample.
         measured: n x 3, NaN where a channel was not recorded.
         show: gives the outputs (n x 3) from a start.
     """

@@ -17,7 +17,7 @@ _MOST_LINES = 200
 
 
 class FileFeedback(LoggedFeedback):
-    """Written anew twice a second at most; nobody answers."""
+    """Written anew twice a second at most; no one answers."""
 
     def __init__(self, folder: Path) -> None:
         self._path = folder / PROGRESS

@@ -13,11 +13,11 @@ from hil.core.controller import load_controller
 from hil.core.controller.shaping import RequestLimits, Schedule, SlipWithdrawal
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, load_model
-from hil.core.recording import Recording, read_recording
+from hil.core.recording import read_recording
 from hil.engine import RunRequest, run_plan
 from hil.engine.bench.bench_file import bench_from_dict
 from hil.fmu import Axle
-from hil.plant import replay
+from hil.plant import simulate
 from tests.benches_for_tests import SIM, plan
 
 MODEL = load_model(SIM.simulation.model)
@@ -43,14 +43,9 @@ def test_without_a_controller_it_is_the_model_of_every_analysis() -> None:
     time_s = np.arange(0, 1.5, 1e-3)
     torque_nm = 15.0 * (time_s > 0.2) + 5.0 * np.sin(2 * np.pi * 7 * time_s)
     found = stepped(Axle(MODEL), torque_nm)
-    measured = {
-        "time_s": time_s,
-        "motor_torque_ref_nm": torque_nm,
-        **{name: found[name] for name in CHANNELS},
-    }
-    right = replay(MODEL, Recording(measured, Path("unit")))
+    right = simulate(MODEL, torque_nm, 1e-3)
     for name in CHANNELS:
-        assert gap(found[name], right.channels[name]) < 1e-6
+        assert gap(found[name], right[name]) < 1e-6
 
 
 def test_with_a_controller_it_is_the_simulated_bench(tmp_path: Path) -> None:
