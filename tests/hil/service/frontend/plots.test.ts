@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { channelsOf, layoutOf, layoutText, usualLayout, withChannel, type PlotSpec } from "../../../../hil/service/frontend/src/plot/layout.ts";
 import { digitsOf } from "../../../../hil/service/frontend/src/format.ts";
-import { numbersFrom, numbersText, panned, rangeFrom, rangeOf, rangeText, zoomed } from "../../../../hil/service/frontend/src/plot/range.ts";
+import { decades, numbersFrom, numbersText, panned, rangeFrom, rangeOf, rangeText, zoomed } from "../../../../hil/service/frontend/src/plot/range.ts";
 import { nearest, Recent, tracesOf, valueAt } from "../../../../hil/service/frontend/src/plot/traces.ts";
 
 const PLOTS: PlotSpec[] = [{ kind: "time", channels: ["a", "b"] }, { kind: "spectrum", channels: ["a"] }, { kind: "xy", channels: ["a", "b"] }, { kind: "time", channels: [] }];
@@ -80,4 +80,10 @@ test("a value is that of the bucket at the cursor, and none where nothing was me
 
 test("numbers of an axis have as many digits as tell its ticks apart", () => {
   assert.deepEqual([1, 2.5, 0.25, 0.1, 0.05, 20, 1e-9].map(digitsOf), [0, 1, 2, 1, 2, 0, 6]);
+});
+
+test("a logarithmic axis that begins just below a decade has an end", () => {
+  assert.deepEqual(decades(0.099995, 0.35), [0.1, 0.2, 0.3]);
+  assert.equal(decades(0.099995, 28.3588).at(-1), 20);
+  assert.deepEqual(decades(0, 10), []);
 });

@@ -7,6 +7,7 @@ import { figure, significant } from "../format.ts";
 import { colour, coloured } from "../theme.ts";
 import { drawBand } from "./canvas.ts";
 import { axis, HEIGHT, onWidth, roomy } from "./frame.ts";
+import { decades } from "./range.ts";
 
 export type Values = readonly (number | null)[];
 
@@ -84,7 +85,7 @@ function make(element: HTMLElement, now: { current: CurvePlotOptions }, point: (
   return new uPlot({
     width: Math.max(200, element.clientWidth), height: HEIGHT, legend: { show: false },
     scales: { x: { time: false, ...(x.log ? { distr: 3 } : {}), range: (_, low, high) => alongOf(now.current, low, high) }, y: { range: (_, low, high) => rangeOf(now.current, low, high) } },
-    axes: [axis({ space: 50, size: 28, values: (_, values) => named(x.log ? roundOnes(values) : values, x.unit) }), axis({ size: 56, unit: y.unit })],
+    axes: [axis({ space: 50, size: 28, ...(x.log ? { splits: (_, __, low, high) => decades(low, high) } : {}), values: (_, values) => named(x.log ? roundOnes(values) : values, x.unit) }), axis({ size: 56, unit: y.unit })],
     series: [{}, ...curves.flatMap(seriesOf)],
     bands: curves.flatMap((one, at) => (one.reach ? [{ series: [(starts[at] as number) + 1, (starts[at] as number) + 2] as [number, number], fill: () => faint(one.role) }] : [])),
     cursor: { drag: { x: false, y: false }, points: { show: false } },

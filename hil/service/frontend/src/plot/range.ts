@@ -46,3 +46,16 @@ export function rangeFrom(text: string | null): Shown | null {
 
 export const numbersFrom = (text: string | null): number[] => (text ?? "").split(",").filter(Boolean).map(Number).filter(Number.isFinite).slice(0, 6);
 export const numbersText = (values: readonly number[]): string => values.map(inAddress).join(",");
+
+// Places on a logarithmic axis: one to nine of each decade. uPlot's own never end where a range begins just below a decade.
+export function decades(low: number, high: number): number[] {
+  if (!(low > 0) || !(high >= low) || !Number.isFinite(high)) return [];
+  const found: number[] = [];
+  for (let power = Math.floor(Math.log10(low)); power <= Math.ceil(Math.log10(high)); power += 1) {
+    for (let digit = 1; digit <= 9; digit += 1) {
+      const place = Number(`${digit}e${power}`);
+      if (place >= low && place <= high) found.push(place);
+    }
+  }
+  return found;
+}
