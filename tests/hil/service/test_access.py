@@ -161,6 +161,7 @@ _NONE |= {
     "person": "2000000000",
     "reservation": "2000000000",
     "tag": "x",
+    "simulation": "1",
     "kind": "plan",
 }
 
