@@ -56,14 +56,16 @@ def explain_gap(
         unseen = problem_of(model, held, levels, done.problem.spectrum)
     show("judging")
     shown = _Shown(problem, unseen, done)
+    fitted = tuple(Replay(one) for one in problem.series)
+    held_out = tuple(Replay(one) for one in unseen.series) if holdout else ()
     return judged(
         Judged(
             model,
             done,
             shown.left,
-            lambda best: (shown.gaps(problem, best), shown.gaps(unseen, best) if holdout else {}),
-            tuple(Replay(one) for one in problem.series),
-            tuple(Replay(one) for one in unseen.series) if holdout else (),
+            lambda best: (shown.gaps(fitted, best), shown.gaps(held_out, best) if holdout else {}),
+            fitted,
+            held_out,
         ),
         tuple(note for one in series for note in one.notes),
         time.perf_counter() - began,
@@ -95,16 +97,16 @@ class _Shown:
         whole = replace(self.problem, series=tuple(s for one in both for s in one.series))
         return whole.mean_square([e for one in both for e in self.point(one, hypothesis).errors])
 
-    def gaps(self, problem: Problem, best: Candidate) -> dict[str, Gap]:
+    def gaps(self, replays: Sequence[Replay], best: Candidate) -> dict[str, Gap]:
         """Of the base, the numbers alone and the best hypothesis."""
-        three = (problem.model, *(one.point.hypothesis.model() for one in (self.done.found[()], best)))
-        errors = [np.concatenate([Replay(one).errors(model) for one in problem.series]) for model in three]
-        measured = np.concatenate([one.measured for one in problem.series])
+        three = (self.problem.model, *(one.point.hypothesis.model() for one in (self.done.found[()], best)))
+        errors = [np.concatenate([one.errors(model) for one in replays]) for model in three]
+        measured = np.concatenate([one.series.measured for one in replays])
         spread = np.sqrt(_mean((measured - _mean(measured)) ** 2))
         rms = [np.sqrt(_mean(one**2)) / spread for one in errors]
         return {
             name: Gap(
-                float(rms[0][i]), float(rms[1][i]), float(rms[2][i]), float(problem.noise[i] / spread[i])
+                float(rms[0][i]), float(rms[1][i]), float(rms[2][i]), float(self.problem.noise[i] / spread[i])
             )
             for i, name in enumerate(OUTPUTS)
             if np.isfinite(spread[i])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
@@ -60,15 +60,20 @@ class Curve:
 
 @dataclass(frozen=True)
 class Replay:
-    """A stretch of a recording, to be simulated as `hil simulate` does it."""
+    """A stretch of a recording, to be simulated as `hil simulate` does it, once by each model."""
 
     series: Series
+    _shown: list[tuple[Model, Array]] = field(default_factory=list, init=False, repr=False, compare=False)
 
     def outputs(self, model: Model) -> Array:
         """What a model shows at every sample: n x 3, in the order of `OUTPUTS`."""
+        for known, outputs in self._shown:
+            if known == model:
+                return outputs
         one = self.series
         shown = replayed(model, one.torque, one.dt, one.samples, one.load, one.first_wheel_angle_rad)
-        return np.column_stack([shown[name] for name in OUTPUTS])
+        self._shown.append((model, np.column_stack([shown[name] for name in OUTPUTS])))
+        return self._shown[-1][1]
 
     def errors(self, model: Model) -> Array:
         """Measured less simulated as block means, blocks x 3; NaN where a channel was not recorded."""

@@ -95,9 +95,10 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
 def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, list[float]]:
     """Without effects that take off less than half of what stays without them; shares of the others."""
     while best.names:
-        at = linearised(of.done.problem, best.point)
         shares = [
-            1.0 - _remains(of, _without(of.done, best, index), best) if _is_line(of.done, at, index) else 0.0
+            1.0 - _remains(of, _without(of.done, best, index), best)
+            if _is_line(of.done, best, index)
+            else 0.0
             for index in range(len(best.names))
         ]
         least = int(np.argmin(shares))
@@ -107,17 +108,17 @@ def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, list[float]]
     return best, []
 
 
-def _is_line(done: Search, at: Linearised, index: int) -> bool:
+def _is_line(done: Search, best: Candidate, index: int) -> bool:
     """Whether an effect follows no angle, or recordings hold periods of its order and tell it to half a one.
 
     A ripple of less than that takes up whatever is slow.
     """
-    use = at.point.hypothesis.terms[index]
+    use = best.point.hypothesis.terms[index]
     side = EFFECTS[use.id].law.follows
     if side is None:
         return True
     whole = turns(done.problem, side)
-    sure = at.standard_error(index, "order") * whole < HALF
+    sure = linearised(done.problem, best.point).standard_error(index, "order") * whole < HALF
     return sure and float(use.values["order"]) * whole >= PERIODS
 
 

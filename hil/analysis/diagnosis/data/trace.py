@@ -24,7 +24,7 @@ from hil.core.channels import CHANNELS, INPUT, OUTPUTS, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import closest
 from hil.core.recording import Recording
-from hil.plant import SENSOR_GAIN, SENSOR_OFFSET
+from hil.plant import SENSOR_GAIN, SENSOR_OFFSET, turned
 
 Array = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
@@ -63,20 +63,10 @@ class Trace:
         Where no speed was measured they stay at zero: no order can be seen. Gain and offset of `sensors`
         (as of `ideal_sensors`) are taken out.
         """
-        motor, wheel = np.nan_to_num(self.samples[:, 0]), np.nan_to_num(self.samples[:, 1])
+        speeds = self.samples[:, :2]
         if sensors is not None:
-            motor, wheel = (
-                (v - row[SENSOR_OFFSET]) / row[SENSOR_GAIN]
-                for v, row in zip((motor, wheel), sensors, strict=False)
-            )
-        if not self.has[1]:
-            wheel = motor / gear_ratio
-        if not self.has[0]:
-            motor = wheel * gear_ratio
-        speeds = np.column_stack([wheel, motor])
-        turned = np.cumsum(0.5 * self.dt * (speeds[1:] + speeds[:-1]), axis=0)
-        first = self.first_wheel_angle_rad * np.array([1.0, gear_ratio])
-        return np.asarray(first + np.concatenate([np.zeros((1, 2)), turned]), dtype=float)
+            speeds = (speeds - sensors[:2, SENSOR_OFFSET]) / sensors[:2, SENSOR_GAIN]
+        return turned(speeds, self.dt, gear_ratio, self.first_wheel_angle_rad)
 
     @property
     def has(self) -> Flags:
