@@ -1,8 +1,8 @@
 """Linear evidence on the latent torque of a turning mass: all laws at once, no search over simulations.
 
-Momentum over impulse in short windows,
+Momentum over impulse in short windows w,
 
-    ∫T dt = J·Δω + b·∫ω dt + Σ c_j·∫g_j(speed, angle) dt,
+    ∫wT dt = J·∫wω' dt + b·∫wω dt + Σ c_j·∫w g_j(speed, angle) dt,
 
 is linear in J, b and the sizes c_j of laws g_j, which are those of the effects' own files at size one. What
 is unsure is the torque: a drive's is noisier than its speed, whose proven noise is taken out.
@@ -14,15 +14,15 @@ law takes is the latent torque.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.missing_effects._hypothesis import Hypothesis
-from hil.analysis.missing_effects._mass import WINDOW_S, Mass, mass_of, window_means
-from hil.analysis.missing_effects._orders import FINE, PERIODS, over_angle, peaks
+from hil.analysis.missing_effects._mass import WINDOW_S, Mass, mass_of
+from hil.analysis.missing_effects._orders import PERIODS, fineness, over_angle, peaks
 from hil.analysis.missing_effects._series import Series
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
@@ -31,7 +31,8 @@ from hil.plant import chain_numbers
 Array = npt.NDArray[np.float64]
 
 _HIGHEST = 40.0  # order
-_NEAR = 0.25 * np.arange(-8, 9)  # widths of a peak, which what stands beside it moves
+_NEAR = np.arange(-8, 9)  # steps around a peak, which what stands beside it moves
+_STEPS = (0.25, 0.03)  # widths of a peak
 _PEAKS = 2  # orders of turning that are tried
 
 
@@ -50,7 +51,7 @@ def readings(hypothesis: Hypothesis, series: Sequence[Series]) -> list[Reading]:
     Only those whose laws take more off the torque's impulse than their numbers cost. None for chains with
     shafts.
     """
-    mass = mass_of(hypothesis.kind, series, hypothesis.numbers["gear_ratio"])
+    mass = mass_of(hypothesis.kind, series, hypothesis.numbers)
     alone = _read(mass, hypothesis) if mass else None
     if mass is None or alone is None:
         return []
@@ -97,8 +98,8 @@ def _orders(mass: Mass, hypothesis: Hypothesis) -> list[float]:
     columns, right, _ = _regression(mass, hypothesis)
     rest = right - columns @ _solved(mass, columns, right)
     angles = [mass.angle(one) for one in mass.series]
-    middles = [window_means(one, angle) for one, angle in zip(mass.series, angles, strict=True)]
-    turns = max(float(np.ptp(np.concatenate(middles))) / (2 * np.pi), 1e-9)
+    middles = mass.window_means(angles)
+    turns = max(float(np.ptp(middles)) / (2 * np.pi), 1e-9)
     basis = np.linalg.qr(columns)[0]
 
     def drop(order: float) -> float:
@@ -109,14 +110,17 @@ def _orders(mass: Mass, hypothesis: Hypothesis) -> list[float]:
         wave = np.linalg.qr(wave - basis @ (basis.T @ wave))[0]
         return float(np.sum((wave.T @ rest) ** 2))
 
-    power = np.abs(over_angle(rest, np.concatenate(middles), round(_HIGHEST / FINE)))
-    orders = FINE * np.arange(1.0, len(power) + 1.0, dtype=np.float64)
+    fine = fineness(turns)
+    power = np.abs(over_angle(rest, middles, fine, round(_HIGHEST / fine)))
+    orders = fine * np.arange(1.0, len(power) + 1.0, dtype=np.float64)
     power[orders * turns < PERIODS] = 0.0
     found = []
     for peak in peaks(orders, power, 2 * _PEAKS):
-        near = [one for one in peak + _NEAR / turns if one * turns >= PERIODS]
-        best = max(near, key=drop)
-        found.append((drop(best), float(best)))
+        best = peak
+        for step in _STEPS:
+            near = [one for one in best + step * _NEAR / turns if one * turns >= PERIODS]
+            best = float(max(near, key=drop, default=best))
+        found.append((drop(best), best))
     return [order for _, order in sorted(found, reverse=True)[:_PEAKS]]
 
 
@@ -149,18 +153,20 @@ def _solved(mass: Mass, columns: Array, right: Array) -> Array:
     """
     scale = np.maximum(np.max(np.abs(columns), axis=0), 1e-300)
     normal = (columns / scale).T @ (columns / scale)
-    normal[0, 0] -= 2.0 * len(right) * (mass.noise_rad_s / scale[0]) ** 2
+    normal[0, 0] -= len(right) * (mass.change_noise_rad_s / scale[0]) ** 2
     return np.asarray(np.linalg.lstsq(normal, (columns / scale).T @ right, rcond=1e-12)[0] / scale)
 
 
 def _read(mass: Mass, hypothesis: Hypothesis) -> Reading | None:
     """Numbers of a hypothesis by the regression; None where they are not physical."""
     columns, right, places = _regression(mass, hypothesis)
+    if len(right) < 2 * columns.shape[1]:
+        return None  # hardly a window in which it moves
     found = _solved(mass, columns, right)
     if found[0] <= 0.0:
         return None
     rest = right - columns @ found
-    numbers, sizes = _as_one_mass(hypothesis.base, found[0], max(found[1], 0.0)), found[2:]
+    numbers, sizes = _as_one_mass(hypothesis.numbers, found[0], max(found[1], 0.0)), found[2:]
     terms = [dict(use.values) for use in hypothesis.terms]
     for (index, name, phase), size in zip(places, sizes.tolist(), strict=True):
         limits = EFFECTS[hypothesis.terms[index].id].parameter(name)
@@ -177,11 +183,10 @@ def _read(mass: Mass, hypothesis: Hypothesis) -> Reading | None:
     return Reading(replace(hypothesis, numbers=numbers, terms=uses), left, len(sizes))
 
 
-def _as_one_mass(model: Model, inertia: float, drag: float) -> dict[str, float]:
-    """Numbers of a rigid model of that inertia on the rotor side, shared out as in the model."""
-    numbers = dict(model.parameters)
+def _as_one_mass(numbers: Mapping[str, float], inertia: float, drag: float) -> dict[str, float]:
+    """Numbers of a rigid model of that inertia on the rotor side, shared out as they are."""
     share = inertia / (numbers["motor_inertia"] + numbers["vehicle_inertia"] / numbers["gear_ratio"] ** 2)
-    return numbers | {
+    return {**numbers} | {
         "motor_inertia": numbers["motor_inertia"] * share,
         "vehicle_inertia": numbers["vehicle_inertia"] * share,
         "viscous_drag": drag,
@@ -193,10 +198,12 @@ def latent_torque(hypothesis: Hypothesis, series: Sequence[Series]) -> tuple[Arr
 
     One value a window: (windows,) each. None for chains with shafts, or without a speed.
     """
-    mass = mass_of(hypothesis.kind, series, hypothesis.numbers["gear_ratio"])
+    mass = mass_of(hypothesis.kind, series, hypothesis.numbers)
     if mass is None:
         return None
     columns, impulse, places = _regression(mass, hypothesis)
+    if not len(impulse):
+        return None
     numbers = hypothesis.numbers
     inertia = numbers["motor_inertia"] + numbers["vehicle_inertia"] / numbers["gear_ratio"] ** 2
     left = impulse - inertia * columns[:, 0] - numbers["viscous_drag"] * columns[:, 1]
@@ -206,18 +213,17 @@ def latent_torque(hypothesis: Hypothesis, series: Sequence[Series]) -> tuple[Arr
         if "phase_rad" in values:
             size *= np.cos(float(values["phase_rad"]) - phase)
         left = left - size * column
-    means = [
-        np.concatenate([window_means(one, track(one)) for one in mass.series])
-        for track in (mass.speed, mass.angle)
-    ]
-    return left / WINDOW_S, means[0], means[1]
+    speed, angle = (
+        mass.window_means([track(one) for one in mass.series]) for track in (mass.speed, mass.angle)
+    )
+    return left / WINDOW_S, speed, angle
 
 
 def read_numbers(model: Model, series: Sequence[Series]) -> Hypothesis | None:
     """The numbers alone as the balance reads them beside dry friction and an offset."""
     alone = Hypothesis(model, dict(model.parameters))
     friction = alone.with_term(EffectUse("coulomb_friction", {"torque_nm": 1.0}), frozenset({"offset_nm"}))
-    mass = mass_of(model.kind, series, model.parameters["gear_ratio"])
+    mass = mass_of(model.kind, series, model.parameters)
     if mass is None or any(use.id == "coulomb_friction" for use in model.effects):
         return None
     found = _read(mass, friction)

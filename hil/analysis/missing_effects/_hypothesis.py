@@ -18,13 +18,13 @@ Array = npt.NDArray[np.float64]
 
 TOLERANCE = 0.02
 """A number of a base is right to that share, where the model file states none, or it may be anything."""
-_NO_GEAR = 1e-3  # tolerance of a gear ratio of one: where there is no gear it is what it is
+_TEETH = 1e-3  # tolerance of a gear ratio: teeth are counted
 _LONGEST_DELAY_S = 0.5
 
 
 def tolerance_of(model: Model, name: str) -> float:
     """Share to which a base's number is right, if it is: by the model file, or what is usual."""
-    usual = _NO_GEAR if name == "gear_ratio" and model.parameters[name] == 1.0 else TOLERANCE
+    usual = _TEETH if name == "gear_ratio" else TOLERANCE
     return float(model.tolerance.get(name, usual))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,16 +17,18 @@ from hil.core.effects import Effect, Motion
 Array = npt.NDArray[np.float64]
 
 WINDOW_S = 0.1
-"""Of impulses: long against a block and a dead time, short against what drag does."""
+"""Of impulses, half the length of a hat: long against a block and a dead time, short against what drag does."""
 _QUIET = 1e-3  # of the largest speed: below it the sign of a speed is not known
+_NOISES = 3.0  # nor is it below so many standard deviations
 
 
 @dataclass(frozen=True)
 class Mass:
-    """Momentum balance of a rigid axle over all recordings, on the rotor side."""
+    """Momentum balance of a rigid axle over all recordings, on the rotor side; its torque acts late."""
 
     series: tuple[Series, ...]
     ratio: float
+    delay_s: float = 0.0
 
     @cached_property
     def noise_rad_s(self) -> float:
@@ -56,18 +58,41 @@ class Mass:
         found = []
         for one in self.series:
             brake = np.zeros(len(one.measured)) if one.load is None else block_means(one, one.load)
-            found.append(block_means(one, one.torque) - brake / self.ratio)
+            late = round(self.delay_s / one.dt)
+            acting = np.concatenate([np.full(late, one.torque[0]), one.torque])[: len(one.torque)]
+            found.append(block_means(one, acting) - brake / self.ratio)
+        return found
+
+    @cached_property
+    def change_noise_rad_s(self) -> float:
+        """Standard deviation by proven noise of a change of speed over a window: of two means' difference."""
+        reach = _reach(self.series[0])
+        return float(self.noise_rad_s * np.sqrt(2.0 / reach))
+
+    @cached_property
+    def _moving(self) -> list[npt.NDArray[np.bool_]]:
+        """Windows of each recording in which the sign of the speed is known, and with it which way friction acts."""
+        found = []
+        for one in self.series:
+            speed = np.abs(self.speed(one))
+            still = speed <= max(_QUIET * float(np.max(speed)), _NOISES * self.noise_rad_s)
+            found.append(_hats(one, still.astype(float)) == 0.0)
         return found
 
     def windowed(self, values: Sequence[Array], *, sums: bool) -> Array:
-        """Impulses of values (sums) or their change over each window, all recordings together."""
-        found = []
-        for one, value in zip(self.series, values, strict=True):
-            reach = max(1, round(WINDOW_S * one.rate_hz))
-            whole = np.cumsum(value) / one.rate_hz if sums else value
-            hop = max(1, reach // 2)
-            found.append(whole[reach::hop] - whole[:-reach:hop])
-        return np.concatenate(found)
+        """Impulses of values (sums) or their change over each window that moves, all recordings together.
+
+        Values are weighed by a hat, their change by its slope, which is the mean of its second half less that
+        of its first: noise of single readings counts little (modulating functions: M. Shinbrot, Trans. ASME
+        79 (1957) 547).
+        """
+        means = _hats if sums else _changes
+        every = zip(self.series, values, self._moving, strict=True)
+        return np.concatenate([means(one, value)[moving] for one, value, moving in every])
+
+    def window_means(self, values: Sequence[Array]) -> Array:
+        """Means over the same windows."""
+        return self.windowed(values, sums=True) / WINDOW_S
 
     def braked_by(self, effect: Effect) -> bool:
         """Whether an effect's torque is in this balance."""
@@ -96,10 +121,12 @@ class Mass:
         return total
 
 
-def mass_of(kind: str, series: Sequence[Series], ratio: float) -> Mass | None:
-    """The mass of a rigid model; None for chains with shafts, or without a speed."""
+def mass_of(kind: str, series: Sequence[Series], numbers: Mapping[str, float]) -> Mass | None:
+    """The mass of a rigid model with such numbers; None for chains with shafts, or without a speed."""
     moving = tuple(one for one in series if one.has[:2].any())
-    return Mass(moving, ratio) if kind == "rigid" and moving else None
+    if kind != "rigid" or not moving:
+        return None
+    return Mass(moving, numbers["gear_ratio"], numbers.get("torque_delay", 0.0))
 
 
 def block_means(one: Series, values: Array) -> Array:
@@ -108,8 +135,30 @@ def block_means(one: Series, values: Array) -> Array:
     return np.asarray(values[: count * one.block].reshape(count, one.block).mean(axis=1))
 
 
-def window_means(one: Series, values: Array) -> Array:
-    """Means over the windows of impulses of values at blocks."""
-    reach = max(1, round(WINDOW_S * one.rate_hz))
-    whole, hop = np.cumsum(values), max(1, reach // 2)
-    return np.asarray((whole[reach::hop] - whole[:-reach:hop]) / reach)
+def _hats(one: Series, values: Array) -> Array:
+    """Impulses over the windows of a recording: sums by a hat of height one and twice `WINDOW_S` long."""
+    reach = _reach(one)
+    between = 0.5 * (values[1:] + values[:-1])  # where speeds change
+    means = _running(_running(between, reach), reach)
+    return np.asarray(reach / one.rate_hz * means[:: _hop(reach)])
+
+
+def _changes(one: Series, values: Array) -> Array:
+    """Change over the same windows: mean of the second half less that of the first."""
+    reach = _reach(one)
+    means = _running(values, reach)
+    return np.asarray((means[reach:] - means[:-reach])[:: _hop(reach)])
+
+
+def _running(values: Array, reach: int) -> Array:
+    """Means of so many values in a row."""
+    whole = np.concatenate([[0.0], np.cumsum(values)])
+    return np.asarray((whole[reach:] - whole[:-reach]) / reach)
+
+
+def _reach(one: Series) -> int:
+    return max(1, round(WINDOW_S * one.rate_hz))
+
+
+def _hop(reach: int) -> int:
+    return max(1, reach // 2)

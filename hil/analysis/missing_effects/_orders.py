@@ -21,8 +21,8 @@ Array = npt.NDArray[np.float64]
 Side = Literal["wheel", "rotor"]
 
 _HIGHEST = 60.0  # order
-FINE = 0.02
-"""Distance of orders that are looked at."""
+_FINE = 0.02  # distance of orders that are looked at, at most
+_OF_A_TURN = 0.25  # by which an order may be off over the longest recording: it would lose its phase
 PERIODS = 2.0
 """Of a ripple that a recording must hold."""
 _COUNT = 4
@@ -41,7 +41,8 @@ def orders_of(problem: Problem, point: Point, side: Side) -> list[float]:
 
 def _orders_by(problem: Problem, point: Point, side: Side) -> list[float]:
     system = linear_system_of(point.hypothesis.packed()[0])
-    orders = np.arange(FINE, _HIGHEST, FINE)
+    fine = fineness(turns(problem, side))
+    orders = np.arange(fine, _HIGHEST, fine)
     slopes, energy, whole = np.zeros(len(orders), complex), np.zeros(len(orders)), 0.0
     for index, one in enumerate(problem.series):
         error = point.errors[index]
@@ -64,7 +65,7 @@ def _orders_by(problem: Problem, point: Point, side: Side) -> list[float]:
         finer = int(np.ceil(2.0 * _HIGHEST * np.max(speed) / one.rate_hz)) + 1
         at = np.arange(count * finer) / finer
         pushed = np.fft.irfft(back, count * finer) * finer
-        slopes += over_angle(pushed, np.interp(at, np.arange(count), angle), len(orders)) / finer
+        slopes += over_angle(pushed, np.interp(at, np.arange(count), angle), fine, len(orders)) / finer
         energy += _energy(speed, orders, frequency, gain)
     promise = np.abs(slopes) ** 2 / np.maximum(energy, 1e-250)
     promise[promise > whole] = 0.0  # more than there is: an order that the plant does not show
@@ -82,9 +83,14 @@ def turns(problem: Problem, side: Side) -> float:
     return max(float(np.ptp(both[:, column])) for both in problem.angles) / (2 * np.pi)
 
 
-def over_angle(values: Array, angle: Array, count: int) -> npt.NDArray[np.complex128]:
-    """Σ values·e^{-j·order·angle} at orders `FINE`, 2·`FINE` …: angles modulo one period of the finest."""
-    period = 2 * np.pi / FINE
+def fineness(turned: float) -> float:
+    """Distance of orders that are looked at in recordings of so many turns."""
+    return min(_FINE, _OF_A_TURN / max(turned, 1e-9))
+
+
+def over_angle(values: Array, angle: Array, fine: float, count: int) -> npt.NDArray[np.complex128]:
+    """Σ values·e^{-j·order·angle} at orders `fine`, 2·`fine` …: angles modulo one period of the finest."""
+    period = 2 * np.pi / fine
     bins = 4 * count
     place = np.floor((angle % period) / period * bins).astype(int) % bins
     return np.asarray(np.fft.rfft(np.bincount(place, values, bins))[1 : count + 1])

@@ -65,6 +65,11 @@ class Search:
         """What one more free number must let log L grow by."""
         return self.score(candidate) - self.score(replace(candidate, free=candidate.free + 1))
 
+    def may_gain(self, candidate: Candidate) -> bool:
+        """Whether one more name could pay, if it left nothing but noise."""
+        powers = candidate.point.powers(self.problem)
+        return powers.most_to_gain(self.problem.noise) > math.log(candidate.known) + self.cost_of_a_number(candidate)
+
     def go_on_from(self, best: Candidate) -> None:
         """Weigh errors by what the best hypothesis so far leaves."""
         powers = best.point.powers(self.problem)
@@ -74,11 +79,7 @@ class Search:
     def fitted(self, hypothesis: Hypothesis, near: Candidate | None, rounds: int = ROUNDS) -> Candidate:
         """Fit a hypothesis, weighed by the spectrum that it leaves itself; the best of its names is kept."""
         goes_on = near is not None and near.point.hypothesis is hypothesis
-        point = (
-            near.point
-            if near and goes_on
-            else point_at(self.problem, hypothesis, near.point.starts if near else None)
-        )
+        point = near.point if near and goes_on else self._begun(hypothesis, near)
         best = before = self._candidate(point)
         problem = self.problem
         if goes_on:
@@ -97,6 +98,16 @@ class Search:
         key = tuple(sorted(best.names))
         self.found[key] = max(self.found.get(key, best), best, key=self.score)
         return best
+
+    def _begun(self, hypothesis: Hypothesis, near: Candidate | None) -> Point:
+        """A hypothesis as it is, from starts of another or, where it sticks and these may be far off, as measured."""
+        if near is None:
+            return point_at(self.problem, hypothesis)
+        point = point_at(self.problem, hypothesis, near.point.starts)
+        if hypothesis.kind != "rigid" or not any(EFFECTS[use.id].law.dry for use in hypothesis.terms):
+            return point
+        fresh = with_better_starts(self.problem, point_at(self.problem, hypothesis))
+        return max(point, fresh, key=lambda one: self._candidate(one).log_likelihood)
 
     def at(self, hypothesis: Hypothesis, near: Candidate) -> Candidate:
         """A hypothesis as it is, from the starts of another."""
@@ -124,7 +135,7 @@ def search(problem: Problem, show: Callable[[str], None]) -> Search:
     best = done.fitted(best.point.hypothesis, best)
     done.go_on_from(best)
     weak = False
-    while len(best.names) < _MOST_NAMES and not problem.is_noise(best.point.errors):
+    while len(best.names) < _MOST_NAMES and done.may_gain(best):
         grown = _grown(done, best, linear if not best.names else (), show)
         if grown is None or done.score(grown) <= done.score(best):
             break
@@ -162,17 +173,19 @@ def _grown(
 
     `linear` are hypotheses that responses suggest.
 
-    Losses (friction, drag, resistance), which every driveline has, are tried before rarer names: these are
-    not looked at where a loss takes off half of what stays or more.
+    Losses (friction, drag, resistance), which every driveline has, are tried before rarer names: where one
+    takes off half of what stays or more, only those are looked at that promise more than half of what it brought.
     """
     suggested = [*((one, math.inf) for one in linear), *_suggested(done, best)]
     losses = [one for one in suggested if _is_loss(one[0])]
+    rarer = [one for one in suggested if not _is_loss(one[0])]
     grown = _best_of(done, best, losses, show)
     if grown is not None and done.score(grown) > done.score(best):
         had, has = (done.problem.mean_square(one.point.errors) for one in (best, grown))
         if remains(had, has, done.problem.noise**2, 1.0) <= HALF:
-            return grown
-    others = _best_of(done, best, [one for one in suggested if not _is_loss(one[0])], show)
+            brought = HALF * (grown.log_likelihood - best.log_likelihood)
+            rarer = [one for one in rarer if brought < one[1] < math.inf]
+    others = _best_of(done, best, rarer, show)
     return max((one for one in (grown, others) if one is not None), key=done.score, default=None)
 
 
@@ -202,13 +215,19 @@ def _best_of(
         tried.append(done.fitted(hypothesis, best, 1))
         reached = max(reached, tried[-1].log_likelihood - best.log_likelihood)
     rounds = 1
+    tried = _best_of_each_name(done, tried)
     while len(tried) > _RIVALS:
-        tried.sort(key=done.score, reverse=True)
         tried = tried[: max(_RIVALS, len(tried) // 2)]
-        tried = [done.fitted(one.point.hypothesis, one, rounds) for one in tried]
+        tried = _best_of_each_name(done, [done.fitted(one.point.hypothesis, one, rounds) for one in tried])
         rounds *= 2
     ended = [_opened(done, done.fitted(one.point.hypothesis, one), show) for one in tried]
     return max(ended, key=done.score, default=None)
+
+
+def _best_of_each_name(done: Search, tried: Sequence[Candidate]) -> list[Candidate]:
+    """The likeliest of each set of names, best first: starts of one name are no rivals."""
+    ranked = sorted(tried, key=done.score)
+    return sorted({one.names: one for one in ranked}.values(), key=done.score, reverse=True)
 
 
 def _suggested(done: Search, best: Candidate) -> list[tuple[Hypothesis, float]]:

@@ -126,10 +126,21 @@ class Powers:
     def log_likelihood(self, noise: Array) -> Array:
         """Of each window, (windows,): the sum is that of the means, each window's part is to first order."""
         p, n, d, inside = self._terms(noise)
-        whole = -np.log((p + d) / (n + d)) - (inside - 1.0) * n / d * (np.log1p(d / n) - np.log1p(d / p))
         slope = inside * self._slope(p, n, d, inside)
-        terms = np.where(self.bins > 0.0, self.bins / inside * (whole + slope * (self.power - p)), 0.0)
+        each = self._of_means(p, n, d, inside) + slope * (self.power - p)
+        terms = np.where(self.bins > 0.0, self.bins / inside * each, 0.0)
         return np.asarray(np.sum(terms, axis=(1, 2)))
+
+    def most_to_gain(self, noise: Array) -> float:
+        """Growth of the log likelihood if nothing but noise were left in any octave."""
+        p, n, d, inside = self._terms(noise)
+        return float(-np.sum(self.bins / inside * self._of_means(p, n, d, inside)))
+
+    @staticmethod
+    def _of_means(p: Array, n: Array, d: Array, inside: Array) -> Array:
+        """Log likelihood of an octave by its mean power (3 x bands)."""
+        shared = np.log1p(d / n) - np.log1p(d / p)
+        return np.asarray(-np.log((p + d) / (n + d)) - (inside - 1.0) * n / d * shared)
 
     def values(self, noise: Array) -> float:
         """Independent values that errors hold: two for a bin of noise, two for an octave of discrepancy."""

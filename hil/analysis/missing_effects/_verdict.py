@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._curve import curves_of
 from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised, point_at
-from hil.analysis.missing_effects._hypothesis import Hypothesis, tolerance_of
+from hil.analysis.missing_effects._hypothesis import TOLERANCE, Hypothesis
 from hil.analysis.missing_effects._noise import rounding_step
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains, weights_of
 from hil.analysis.missing_effects._orders import PERIODS, turns
@@ -271,7 +271,7 @@ def _off(name: str, numbers: Mapping[str, tuple[float, float, float]], done: Sea
     """How far a number moved and how sure that is, both in tolerances."""
     base, found, error = numbers[name]
     size = abs(base) or done.problem.scales[name]  # only numbers that have a scale may be zero
-    tolerance = tolerance_of(done.problem.model, name) * size
+    tolerance = done.problem.model.tolerance.get(name, TOLERANCE) * size
     return abs(found - base) / tolerance, error / tolerance
 
 

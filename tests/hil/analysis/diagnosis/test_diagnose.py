@@ -121,23 +121,16 @@ def from_the_papers_functions(noise: Sequence[float] | None = None) -> Recording
 
 
 @pytest.mark.slow
-def test_the_papers_functions_need_a_tyre_and_dead_time() -> None:
-    found = diagnose(WITHOUT_TYRE, [from_the_papers_functions((0.05, 0.01, 1.0))])
-    assert sorted(names(found)) == ["dead_time", "tyre_compliance"]
-    assert wheel_misfit_db(WITHOUT_TYRE) > 16.0
-    assert wheel_misfit_db(found.model) < 1.5
-    # the three functions are those of no one chain: who reads the names is told how little that means
+@pytest.mark.parametrize("noise", [(0.05, 0.01, 1.0), None], ids=["of sensors", "of a hundredth"])
+def test_no_one_chain_gives_the_papers_functions(noise: tuple[float, ...] | None) -> None:
+    """Each of (14)-(16) was fitted by itself: a tyre mends the wheel speed and spoils the shaft torque."""
+    found = diagnose(WITHOUT_TYRE, [from_the_papers_functions(noise)])
+    assert found.verdict == "unknown"
+    assert names(found) == []
+    assert found.model == WITHOUT_TYRE
+    assert found.alternatives
     assert len(found.open_channels) == 3
-    assert max(effect.confidence for effect in found.effects) <= 0.6
-
-
-@pytest.mark.slow
-def test_a_late_sensor_does_not_take_the_place_of_dead_time() -> None:
-    """With noise of 1 % a skew of the motor speed by 8 ms, beside another effect, explains a little more."""
-    found = diagnose(WITHOUT_TYRE, [from_the_papers_functions()])
-    assert {"dead_time", "tyre_compliance"} <= set(names(found))
-    assert all(found.gap_after[name].gap < 0.5 * gap.gap for name, gap in found.gap_before.items())
-    assert max(effect.confidence for effect in found.effects) <= 0.6
+    assert wheel_misfit_db(WITHOUT_TYRE) > 16.0
 
 
 def wheel_misfit_db(model: Model) -> float:

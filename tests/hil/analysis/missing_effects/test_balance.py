@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from hil.analysis.missing_effects._balance import read_numbers, readings
@@ -31,6 +34,35 @@ def test_dry_friction_leaves_least_and_brings_its_size() -> None:
     friction = next(one for one in found if one.hypothesis.names == ("coulomb_friction",))
     assert friction.left < 0.1
     assert friction.hypothesis.terms[0].values["torque_nm"] == pytest.approx(1.39, rel=0.02)
+
+
+def test_noise_of_single_readings_leaves_numbers_and_friction_alone() -> None:
+    """A change over 0.1 s is told by means of 100 readings on either side, where any one is 0.5 rad/s off."""
+    model = base(1.0)
+    series = series_of(model, [recording(0.54, 2.17, 1.39, noise_rad_s=0.5)])
+    found = readings(Hypothesis(model, model.parameters), series)
+    friction = next(one.hypothesis for one in found if one.hypothesis.names == ("coulomb_friction",))
+    assert _inertia(friction) == pytest.approx(0.54, rel=0.02)
+    assert friction.numbers["viscous_drag"] == pytest.approx(2.17, rel=0.05)
+    assert friction.terms[0].values["torque_nm"] == pytest.approx(1.39, rel=0.1)
+
+
+def test_a_dead_time_of_the_base_is_none_of_the_friction() -> None:
+    model = replace(base(0.54, 2.17), parameters={**base(0.54, 2.17).parameters, "torque_delay": 0.03})
+    late = recording(0.54, 2.17, 1.39)
+    torque = late["motor_torque_ref_nm"]
+    early = {**late.channels, "motor_torque_ref_nm": np.concatenate([torque[30:], np.zeros(30)])}
+    found = readings(Hypothesis(model, model.parameters), series_of(model, [replace(late, channels=early)]))
+    friction = next(one.hypothesis for one in found if one.hypothesis.names == ("coulomb_friction",))
+    assert friction.numbers["torque_delay"] == 0.03
+    assert _inertia(friction) == pytest.approx(0.54, rel=0.01)
+    assert friction.terms[0].values["torque_nm"] == pytest.approx(1.39, rel=0.02)
+
+
+def test_a_mass_that_hardly_moves_beside_its_noise_tells_nothing() -> None:
+    model = base(0.54)
+    series = series_of(model, [recording(0.54, 2.17, 1.39, torque_nm=0.5, noise_rad_s=0.5)])
+    assert not readings(Hypothesis(model, model.parameters), series)
 
 
 def test_gravity_is_a_ripple_of_order_one_in_phase_with_a_half_turn() -> None:

@@ -10,6 +10,7 @@ import pytest
 from hil.analysis.missing_effects._fit import linearised, point_at, with_better_starts
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._noise import proven_noise
+from hil.analysis.missing_effects._orders import fineness
 from hil.analysis.missing_effects._problem import problem_of
 from hil.analysis.missing_effects._screen import promises
 from hil.analysis.missing_effects._series import series_of
@@ -51,3 +52,9 @@ def test_an_order_whose_misfit_grows_towards_a_resonance_promises_most(order: fl
     best = max(promised, key=lambda one: one.gain)
     assert best.label == "wheel_order_disturbance"
     assert float(best.use.values["order"]) == pytest.approx(order, abs=0.02)
+
+
+def test_orders_lie_closer_the_further_a_recording_turns() -> None:
+    """A quarter of a turn over the whole: a ripple between two of them would lose its phase."""
+    assert fineness(10.0) == 0.02
+    assert fineness(100.0) * 100.0 == 0.25

@@ -51,6 +51,17 @@ def test_halving_a_misfit_far_from_noise_gains_what_its_octaves_gain() -> None:
     assert gain == pytest.approx(0.5 * windows * 3 * octaves * np.log(4.0), rel=0.01)
 
 
+def test_what_can_be_gained_is_what_a_likelihood_at_noise_has_more() -> None:
+    """Means at or below noise: nothing; a misfit: what separates it from noise."""
+    large = _white_noise(30.0)
+    noise = np.full(3, 0.3)
+    quiet = Powers(large.edges_hz, np.full_like(large.power, 0.09), large.bins, large.signal)
+    assert quiet.most_to_gain(noise) == pytest.approx(0.0, abs=1e-9)
+    gained = np.sum(quiet.log_likelihood(noise)) - np.sum(large.log_likelihood(noise))
+    assert large.most_to_gain(noise) == pytest.approx(gained, rel=1e-9)
+    assert _white_noise(0.29).most_to_gain(noise) < 60.0  # of chance in octaves of few bins
+
+
 def test_squares_of_weighed_windows_add_to_those_of_the_samples() -> None:
     errors = np.random.default_rng(2).normal(0.0, 1.0, (1, 20_000, 2))
     channels = np.array([True, False, True])
