@@ -17,7 +17,7 @@ from hil.core.effects import Effect, Motion
 Array = npt.NDArray[np.float64]
 
 WINDOW_S = 0.1
-"""Of impulses, half the length of a hat: long against a block and a dead time, short against what drag does."""
+"""Half the length of a hat: long against a block and a dead time, short against what drag does."""
 _QUIET = 1e-3  # of the largest speed: below it the sign of a speed is not known
 _NOISES = 3.0  # nor is it below so many standard deviations
 
@@ -71,7 +71,7 @@ class Mass:
 
     @cached_property
     def _moving(self) -> list[npt.NDArray[np.bool_]]:
-        """Windows of each recording in which the sign of the speed is known, and with it which way friction acts."""
+        """Windows of each recording in which the sign of the speed, and with it that of friction, is known."""
         found = []
         for one in self.series:
             speed = np.abs(self.speed(one))

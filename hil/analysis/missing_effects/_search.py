@@ -68,7 +68,8 @@ class Search:
     def may_gain(self, candidate: Candidate) -> bool:
         """Whether one more name could pay, if it left nothing but noise."""
         powers = candidate.point.powers(self.problem)
-        return powers.most_to_gain(self.problem.noise) > math.log(candidate.known) + self.cost_of_a_number(candidate)
+        least = math.log(candidate.known) + self.cost_of_a_number(candidate)
+        return powers.most_to_gain(self.problem.noise) > least
 
     def go_on_from(self, best: Candidate) -> None:
         """Weigh errors by what the best hypothesis so far leaves."""
@@ -100,7 +101,7 @@ class Search:
         return best
 
     def _begun(self, hypothesis: Hypothesis, near: Candidate | None) -> Point:
-        """A hypothesis as it is, from starts of another or, where it sticks and these may be far off, as measured."""
+        """A hypothesis as it is, from starts of another or, where it sticks and these may be off, as measured."""
         if near is None:
             return point_at(self.problem, hypothesis)
         point = point_at(self.problem, hypothesis, near.point.starts)
@@ -174,7 +175,7 @@ def _grown(
     `linear` are hypotheses that responses suggest.
 
     Losses (friction, drag, resistance), which every driveline has, are tried before rarer names: where one
-    takes off half of what stays or more, only those are looked at that promise more than half of what it brought.
+    takes off half of what stays or more, only those are looked at that promise half of what it brought.
     """
     suggested = [*((one, math.inf) for one in linear), *_suggested(done, best)]
     losses = [one for one in suggested if _is_loss(one[0])]
