@@ -71,7 +71,7 @@ class Mass:
 
     @cached_property
     def _moving(self) -> list[npt.NDArray[np.bool_]]:
-        """Windows of each recording in which the sign of the speed, and with it that of friction, is known."""
+        """Windows in which the sign of the speed is known, and with it that of friction."""
         found = []
         for one in self.series:
             speed = np.abs(self.speed(one))

@@ -36,6 +36,8 @@ HALF = 0.5  # of what stays without it a name must take off
 _TRIED = 8  # hypotheses that a step begins with, the most promising ones; half of them go on each time
 _RIVALS = 2  # of a step are fitted to their end
 _SETTLED = 0.1  # growth of log likelihood between rounds that ends them
+_GROWING = 1.0  # above it a fit goes on after its usual rounds: what it lacks would look like another name
+_MOST_ROUNDS = 4 * ROUNDS
 _BESIDE = 0.3  # of an effect's first number: where an optional one in the same unit begins
 _ASIDE = (
     -0.02,
@@ -87,12 +89,13 @@ class Search:
             problem = problem.weighed_by(point.powers(problem).spectrum(problem.noise))
         elif hypothesis.kind == "rigid":  # slow errors of a mass are friction; a chain's bend its resonances
             problem = problem.weighed_by(white(problem.noise, problem.rate_hz))
-        for number in range(rounds):
+        for number in range(rounds if rounds < ROUNDS else _MOST_ROUNDS):
             # slow misfit would trade a dead time for anything, until errors are weighed by their colour
             point = fit(problem, point, frozenset() if number or goes_on else frozenset({"torque_delay"}))
             after = self._candidate(point)
             best = max(best, after, key=self.score)
-            if abs(after.log_likelihood - before.log_likelihood) < _SETTLED:
+            growth = after.log_likelihood - before.log_likelihood
+            if abs(growth) < _SETTLED or (number >= ROUNDS - 1 and growth < _GROWING):
                 break
             before = after
             problem = self.problem.weighed_by(point.powers(problem).spectrum(problem.noise))
@@ -101,7 +104,7 @@ class Search:
         return best
 
     def _begun(self, hypothesis: Hypothesis, near: Candidate | None) -> Point:
-        """A hypothesis as it is, from starts of another or, where it sticks and these may be off, as measured."""
+        """A hypothesis as it is, from starts of another; as measured where it sticks and these may be off."""
         if near is None:
             return point_at(self.problem, hypothesis)
         point = point_at(self.problem, hypothesis, near.point.starts)
