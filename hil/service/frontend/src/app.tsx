@@ -15,6 +15,7 @@ import { SignIn, signOut } from "./shell/sign-in.tsx";
 import { benchInSight, StopButton } from "./shell/stop.tsx";
 import { useStore } from "./store.ts";
 import { kindInWords } from "./ui/kinds.ts";
+import { LostNotice } from "./views/bench-banner.tsx";
 import { View } from "./views/view.tsx";
 
 const STOP_POST_MS = 5000;
@@ -47,6 +48,7 @@ export function App(): JSX.Element {
         {who.state === "in" ? <Menu place={place} /> : null}
       </header>
       <main id="main" tabIndex={-1}>
+        <LostNotice />
         <Refusal />
         {who.state === "in" ? <View place={place} /> : who.state === "out" ? <SignIn /> : <p class="quiet">{t("Asking the service …")}</p>}
       </main>

@@ -11,6 +11,15 @@ const KINDS: Record<string, string> = {
   tuning: t("tuning"), autotuning: t("autotuning"), linear: t("linear"), doubtful: t("doubtful"), stable: t("stable"), unstable: t("unstable"), segment: t("segment"), event: t("event"), hold: t("hold"),
 };
 
+// Kinds of events in recordings; a device's own are shown by their names.
+const EVENTS: Record<string, string> = {
+  preflight: t("pre-flight check"), arm: t("drives enabled"), controller: t("controller"), speed: t("speed"), slip: t("slip"), vehicle: t("vehicle"), prompt: t("question"), segment: t("segment"), analysis: t("analysis"),
+  hold: t("hold"), held: t("hold"), limit: t("limit reached"), pause: t("delay of the loop"), late: t("late samples"), missing: t("missing"), bus: t("bus"), replay: t("replay"),
+  emergency_stop: t("emergency stop"), failure: t("failure"), interrupt: t("ended early"), traceback: t("program fault"), end_steps: t("end steps"), safe_state: t("safe state"),
+};
+
 export const inWords = (name: string): string => name.replaceAll("_", " ");
 
 export const kindInWords = (name: string): string => KINDS[name] ?? inWords(name);
+
+export const eventInWords = (name: string): string => EVENTS[name] ?? inWords(name);
