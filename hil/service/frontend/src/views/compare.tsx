@@ -6,13 +6,15 @@ import { get } from "../api/client.ts";
 import type { Comparison, FoundRuns, Run, RunView } from "../api/types.ts";
 import { to } from "../addresses.ts";
 import { useData } from "../data.ts";
-import { figure, moment, percent } from "../format.ts";
+import { moment } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { t, tx } from "../i18n/text.ts";
 import { roleOf } from "../plot/frame.ts";
 import { useQuery } from "../router.ts";
 import { kindInWords } from "../ui/kinds.ts";
-import { Badge, linkTo, Heading, Scroll, Section } from "../ui/parts.tsx";
+import { linkTo, Heading, Scroll, Section } from "../ui/parts.tsx";
+import { changeOf, type Change } from "./compare-changes.ts";
+import { ComparedCriteria } from "./compare-criteria.tsx";
 import { ComparePlot, stretchOf } from "./compare-plot.tsx";
 
 const CHANNELS = ["shaft_torque_nm", "motor_speed_rad_s", "motor_torque_nm"];
@@ -135,10 +137,12 @@ function Compared({ runs, query, setQuery }: { runs: number[]; query: URLSearchP
 }
 
 function Lead({ pair }: { pair: Comparison }): JSX.Element {
-  const { first, other, distance, notes } = pair;
+  const { first, other, criteria, notes } = pair, changes = criteria.map(changeOf).filter((one) => one !== null);
+  const count = (kind: Change["kind"]): number => changes.filter((one) => one.kind === kind).length;
   return (
     <>
-      <p>{distance === null ? t("No criterion has a value in both runs {first} and {other}.", { first: first.id, other: other.id }) : t("Mean difference of the criteria of run {other} from run {first}: {share}.", { other: other.id, first: first.id, share: percent(distance, 1) })}</p>
+      <p>{changes.length === 0 ? t("No criterion has a value in both runs {first} and {other}.", { first: first.id, other: other.id })
+        : t("Criteria of run {other} against run {first}: {better} better, {worse} worse, {same} the same, {open} without a direction.", { other: other.id, first: first.id, better: count("better"), worse: count("worse"), same: count("same"), open: count("open") })}</p>
       {notes.map((note) => <p class="quiet" key={note}><English>{note}</English></p>)}
     </>
   );
@@ -164,30 +168,6 @@ function Differences({ pairs }: { pairs: Comparison[] }): JSX.Element {
           </table>
         </Scroll>
       )}
-    </Section>
-  );
-}
-
-function ComparedCriteria({ pairs }: { pairs: Comparison[] }): JSX.Element {
-  const rows = pairs[0]?.criteria ?? [], first = pairs[0]?.first.id ?? 0;
-  return (
-    <Section title={t("Criteria")} label="criteria">
-      <Scroll label={t("Criteria of the runs")}>
-        <table>
-          <thead><tr><th scope="col">{t("criterion")}</th><th scope="col" class="number">{t("limit")}</th><th scope="col" class="number">{t("run {run}", { run: first })}</th>{pairs.map((pair) => <th key={pair.other.id} scope="col" class="number">{t("run {run}", { run: pair.other.id })}</th>)}</tr></thead>
-          <tbody>
-            {rows.map((row) => (
-              <tr key={row.id}><th scope="row">{row.title || row.id}{row.title ? <span class="reason">{row.id}</span> : null}</th><td class="number">{row.limit || "–"}</td>
-                <td class="number">{figure(row.values[0], row.unit)} <Badge kind={row.verdicts[0]} /></td>
-                {pairs.map((pair) => {
-                  const one = pair.criteria.find((other) => other.id === row.id);
-                  return <td key={pair.other.id} class="number">{figure(one?.values[1], row.unit)} {one ? <Badge kind={one.verdicts[1]} /> : null}<span class="reason">{one?.relative == null ? "" : `${one.relative > 0 ? "+" : ""}${percent(one.relative, 1)}`}</span></td>;
-                })}
-              </tr>
-            ))}
-          </tbody>
-        </table>
-      </Scroll>
     </Section>
   );
 }

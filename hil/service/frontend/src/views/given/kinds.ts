@@ -12,7 +12,7 @@ interface Kind {
   write: string; // what writing a new one is called
   edit: string;
   label: string; // of its text
-  start: string;
+  start: string; // a template with comments
 }
 
 const MODEL = `# What this is a model of.
@@ -28,6 +28,33 @@ tyre_stiffness = 5717.0     # N m/rad
 tyre_damping = 351.0        # N m s/rad
 vehicle_inertia = 303.0     # kg m2
 torque_delay = 0.008        # s
+`;
+
+const CONTROLLER = `# What this controller is for. A line after # is a comment; keys below [ ] belong together.
+name = "my_controller"
+sample_time_s = 0.001
+torque_limit_nm = 150.0            # the request is limited to this, N m at the motor
+
+[dfc]                              # driving force control: outer loop
+integral_gain = 0.001              # K_i(DFC)
+feedforward_time_constant_s = 0.05 # tau_2, s
+wheel_radius_m = 0.33
+slip_floor_m_s = 1.0               # below this speed slip counts as at this speed
+
+[wsc]                              # wheel speed control: inner loop, PI
+proportional_gain = 2.6775         # K_p
+integral_gain = 0.4016             # K_i
+filter_time_constant_s = 0.05      # tau_1, s
+
+[wsc.lead]                         # phase stabilization; for gain stabilization put [wsc.notch] in its place
+alpha = 0.25962                    # smaller: more lead
+time_constant_s = 0.0078087        # s; the lead is largest around 1 / (2 pi T sqrt(alpha)) Hz
+normalisation = "high_frequency"
+
+[dfo]                              # driving force observer
+time_constant_s = 0.007961783      # tau_DFO, s
+gear_ratio = 8.148                 # motor speed / wheel speed
+wheel_inertia_kg_m2 = 4.355        # wheels and dyno rotors
 `;
 
 const BENCH = `name = "my_bench"
@@ -68,7 +95,7 @@ model = "three_inertia.toml"
 // Texts are looked up when they are shown: in the language of then.
 export const kindOf = (kind: GivenKind): Kind => ({
   model: { path: "/models", list: "models", address: to.model, write: t("Write a model"), edit: t("Make a new version of the model"), label: t("Text of the model"), start: MODEL },
-  controller: { path: "/controllers", list: "controllers", address: to.controller, write: t("Write a controller"), edit: t("Make a new version of the controller"), label: t("Text of the controller"), start: "" },
+  controller: { path: "/controllers", list: "controllers", address: to.controller, write: t("Write a controller"), edit: t("Make a new version of the controller"), label: t("Text of the controller"), start: CONTROLLER },
   bench: { path: "/bench-files", list: "bench-files", address: to.benchFile, write: t("Write a bench file"), edit: t("Make a new version of the bench file"), label: t("Text of the bench file"), start: BENCH },
 } as const)[kind];
 

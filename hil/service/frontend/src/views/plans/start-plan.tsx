@@ -59,7 +59,7 @@ export function StartPlan({ bench, plan, from }: { bench?: string; plan?: string
         </label>
       ))}
       <div class="forecast" aria-live="polite"><ForecastShown of={forecast} /></div>
-      <button type="submit" class="main" disabled={!forecast.may}>{t("Queue the run")}</button>
+      <button type="submit" class="main" disabled={!wanted || forecast.refused}>{t("Queue the run")}</button>
     </form>
   );
 }

@@ -26,7 +26,7 @@ export function Outcome({ run, view }: { run: Run; view: RunView | null }): JSX.
       {unsafe ? <p class="lead bad">{t("The bench's safe state is NOT CONFIRMED.")}</p> : null}
       {reason ? <p class="lead"><English>{reason}</English></p> : null}
       {more.map((line) => <p class="quiet" key={line}><English>{line.trim()}</English></p>)}
-      {reason && cause ? <p><button type="button" class="plain" onClick={() => look({ from: cause.start_s - BEFORE_S, to: cause.start_s + AFTER_S })}>{t("Show it in the plots")}</button></p> : null}
+      {reason && view && cause ? <p><button type="button" class="plain" onClick={() => look({ from: Math.max(view.first_s, cause.start_s - BEFORE_S), to: cause.start_s + AFTER_S })}>{t("Show it in the plots")}</button></p> : null}
       {first ? (
         <p class={reason ? "" : "lead"}>{failureOf(first)}{first.reason ? <> <English>{first.reason}</English></> : null}
           {segment ? <> <button type="button" class="plain" onClick={() => look(segment)}>{t("Show its segment in the plots")}</button></> : null}

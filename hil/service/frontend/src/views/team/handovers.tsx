@@ -8,7 +8,7 @@ import { attempt, useData } from "../../data.ts";
 import { dayText, moment } from "../../format.ts";
 import { t } from "../../i18n/text.ts";
 import { useMay } from "../../session.ts";
-import { Section } from "../../ui/parts.tsx";
+import { Section, Written } from "../../ui/parts.tsx";
 import { dayOf, shiftAt, type Shift } from "./local-times.ts";
 
 const AGAIN_MS = 5000;
@@ -43,7 +43,7 @@ function Note({ note }: { note: Handover }): JSX.Element {
   return (
     <article class="note" aria-label={t("Hand-over note of {who}", { who: note.who })}>
       <p class="quiet">{t("{who}, {shift} of {day}, written {at}", { who: note.who, shift, day: dayText(note.day), at: moment(note.at) })}</p>
-      <p class="written">{note.text}</p>
+      <Written>{note.text}</Written>
     </article>
   );
 }
