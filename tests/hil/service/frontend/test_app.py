@@ -50,7 +50,7 @@ def test_a_plan_is_foreseen_queued_watched_stopped_and_found(page: playwright.Pa
     page.get_by_role("button", name="Emergency stop sim").click()
     there.over(run)
     expect(page.get_by_text("error", exact=True)).to_be_visible()
-    expect(region(page, "Segments and events")).to_contain_text("safe_state")
+    expect(region(page, "Segments and events")).to_contain_text("safe stateconfirmed")
     expect(page.locator(".facts")).to_contain_text("safe stateconfirmed")
     with page.expect_popup() as report:
         page.get_by_role("link", name="report", exact=True).click()
@@ -78,7 +78,7 @@ def test_a_run_is_queued_and_ended_by_keyboard_alone(page: playwright.Page, ther
     expect(page.get_by_text("Is the cage shut?")).to_be_visible()
     page.get_by_role("button", name="End the run").focus()
     page.keyboard.press("Enter")
-    expect(page.get_by_text("stopped by the operator")).to_be_visible()
+    expect(region(page, "Why it did not pass")).to_contain_text("stopped by the operator")
 
 
 def test_a_service_without_news_is_not_taken_for_lost(page: playwright.Page, there: Served) -> None:
@@ -196,7 +196,13 @@ def test_runs_are_filtered_sorted_and_compared(page: playwright.Page, there: Ser
     inputs = region(page, "Different inputs").locator("table")
     expect(inputs).to_contain_text("variables.torque_nm.default")
     expect(inputs).to_contain_text("150")
-    expect(region(page, "Criteria").locator("table").first).to_contain_text("+")
+    criteria = region(page, "Criteria").locator("table").first
+    expect(criteria.get_by_role("columnheader", name="run 2 − run 1")).to_be_visible()
+    expect(criteria.get_by_role("row", name=re.compile("Peak of the shaft torque"))).to_contain_text(
+        re.compile(r"≤ 400.N m.*\+\d.*N m \(\+\d.*%\)worse")
+    )
+    expect(criteria.get_by_role("row", name=re.compile("s.arrival"))).not_to_contain_text("worse")
+    expect(page.get_by_text("Criteria of run 2 against run 1")).to_be_visible()
     plots = page.locator("figure.plot")
     expect(plots.first.get_by_role("img", name=_PEAKS)).to_be_visible()
     for at in range(3):
@@ -250,6 +256,39 @@ def test_a_run_is_asked_for_again_with_another_value(page: playwright.Page, ther
     button.click()
     expect(page.locator(".facts")).to_contain_text("torque_nm = 120")
     there.over(int(page.url.rpartition("/")[2]))
+
+
+def test_a_run_is_queued_while_it_is_still_being_predicted(page: playwright.Page, there: Served) -> None:
+    page.route("**/api/v1/forecasts", lambda _: None)  # never answered
+    to(page, there, "plans/short")
+    expect(page.get_by_text("Predicting duration and peaks")).to_be_visible()
+    page.get_by_role("button", name="Queue the run").click()
+    expect(page).to_have_url(re.compile(r"/runs/\d+$"))
+    there.over(int(page.url.rpartition("/")[2]))
+
+
+def test_a_narrow_page_has_all_lists_behind_a_button_and_long_notes_are_folded(
+    page: playwright.Page, there: Served
+) -> None:
+    there.post("/runs/1/notes", {"text": "\n".join(f"line {number} of many" for number in range(40))})
+    page.set_viewport_size({"width": 390, "height": 900})
+    to(page, there, "runs/1")
+    note = page.get_by_role("article", name=re.compile("Note of")).locator(".written")
+    expect(note).to_be_visible()
+    folded = note.bounding_box()
+    page.get_by_role("button", name="Show all of it").click()
+    shown = note.bounding_box()
+    assert folded is not None
+    assert shown is not None
+    assert 4 * folded["height"] < shown["height"]
+    settings = page.get_by_role("link", name="Settings")
+    expect(settings).to_be_hidden()
+    page.get_by_role("button", name="Pages: Runs").click()
+    refuse_hard_to_use(page)
+    page.set_viewport_size({"width": 390, "height": 900})
+    settings.click()
+    expect(heading(page, "Settings")).to_be_visible()
+    expect(page.get_by_role("button", name="Pages: Settings")).to_have_attribute("aria-expanded", "false")
 
 
 def test_who_has_no_token_can_stop_and_see_nothing(tmp_path: Path, page: playwright.Page) -> None:

@@ -29,6 +29,7 @@ ADDRESSES = (
     "models",
     "models/three_inertia?write=on",
     "controllers",
+    "controllers?write=new",
     "bench-files",
     "bench-files?write=new",
     "recordings",
@@ -99,7 +100,7 @@ def test_words_of_the_service_are_translated_where_known_and_read_out_as_english
     to(page, there, "runs/1")
     events = page.get_by_role("region", name="Abschnitte und Ereignisse", exact=True)
     expect(events.locator("[lang=en]").filter(has_text="phase").first).to_be_visible()
-    expect(events.get_by_text("bestätigt von RMCU and dynos")).to_be_visible()
+    expect(events.get_by_text("bestätigt durch RMCU und Dynamometer")).to_be_visible()
     expect(events.get_by_text("Vorprüfung")).to_be_visible()
     expect(events.locator("[lang=en]").filter(has_text="confirmed by")).to_have_count(0)
 

@@ -4,17 +4,19 @@ import { t } from "./text.ts";
 
 type Said = Record<string, string>;
 
+const named = (names = ""): string => (names === "RMCU and dynos" ? t("RMCU and dynos") : names);
+
 // The words in groups are names and figures; they stay as they are.
 const PHRASES: [RegExp, (of: Said) => string][] = [
   [/^drives enabled$/, () => t("drives enabled")],
-  [/^(?<names>.+) answer$/, (of) => t("{names} answer", of)],
+  [/^(?<names>.+) answer$/, (of) => t("{names} answer", { names: named(of["names"]) })],
   [/^(?<name>.+) \((?<kind>gain|phase) stabilization\) written, read back$/, (of) => (of["kind"] === "gain" ? t("{name} (gain stabilization) written, read back", of) : t("{name} (phase stabilization) written, read back", of))],
   [/^dynos hold (?<speed>\S+) km\/h$/, (of) => t("dynos hold {speed} km/h", of)],
   [/^dynos simulate the vehicle$/, () => t("dynos simulate the vehicle")],
   [/^(?<segment>\S+) begins$/, (of) => t("{segment} begins", of)],
   [/^(?<segment>\S+) ends$/, (of) => t("{segment} ends", of)],
   [/^(?<segment>\S+) was stopped$/, (of) => t("{segment} was stopped", of)],
-  [/^confirmed by (?<names>.+)$/, (of) => t("confirmed by {names}", of)],
+  [/^confirmed by (?<names>.+)$/, (of) => t("confirmed by {names}", { names: named(of["names"]) })],
   [/^held, torque off, the dynos hold their speed: (?<cause>.+)$/s, (of) => t("held, torque off, the dynos hold their speed: {cause}", of)],
   [/^resumes after (?<seconds>\S+) s: (?<by>.+)$/, (of) => t("resumes after {seconds} s: {by}", of)],
   [/^the bench loop was delayed by (?<seconds>\S+) s$/, (of) => t("the bench loop was delayed by {seconds} s", of)],

@@ -18,7 +18,7 @@ export function changeOf({ values: [first, other], better }: Pick<Row, "values" 
   return { by, kind: better ? ((by < 0) === (better === "lower") ? "better" : "worse") : "open" };
 }
 
-const signed = (value: number, text: string): string => (value > 0 ? `+${text}` : text.replace("-", "−"));
+const signed = (value: number, text: string): string => (value > 0 ? `+${text}` : text);
 
 // With its sign and unit; in per cent of the first, too, where that is not zero.
 export function changeText({ by }: Change, { unit, relative }: Pick<Row, "unit" | "relative">): string {

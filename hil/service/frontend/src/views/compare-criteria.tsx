@@ -2,7 +2,7 @@
 
 import type { JSX } from "preact";
 import type { Comparison } from "../api/types.ts";
-import { figure } from "../format.ts";
+import { figure, joined } from "../format.ts";
 import { t } from "../i18n/text.ts";
 import { Badge, Scroll, Section } from "../ui/parts.tsx";
 import { changeOf, changeText } from "./compare-changes.ts";
@@ -23,7 +23,7 @@ export function ComparedCriteria({ pairs }: { pairs: Comparison[] }): JSX.Elemen
           </thead>
           <tbody>
             {rows.map((row) => (
-              <tr key={row.id}><th scope="row"><CriterionName of={row} /></th><td class="number">{row.limit || "–"}</td>
+              <tr key={row.id}><th scope="row"><CriterionName of={row} /></th><td class="number">{!row.limit ? "–" : row.limit.startsWith("<") ? row.limit : joined(row.limit, row.unit)}</td>
                 <td class="number">{figure(row.values[0], row.unit)} <Badge kind={row.verdicts[0]} /></td>
                 {pairs.map((pair) => <Other key={pair.other.id} row={pair.criteria.find((one) => one.id === row.id)} />)}
               </tr>

@@ -30,31 +30,37 @@ vehicle_inertia = 303.0     # kg m2
 torque_delay = 0.008        # s
 `;
 
-const CONTROLLER = `# What this controller is for. A line after # is a comment; keys below [ ] belong together.
+const CONTROLLER = `# What this controller is for. What follows # is a comment.
 name = "my_controller"
 sample_time_s = 0.001
-torque_limit_nm = 150.0            # the request is limited to this, N m at the motor
+torque_limit_nm = 150.0            # of the request, at the motor
 
 [dfc]                              # driving force control: outer loop
 integral_gain = 0.001              # K_i(DFC)
-feedforward_time_constant_s = 0.05 # tau_2, s
+feedforward_time_constant_s = 0.05 # tau_2
 wheel_radius_m = 0.33
-slip_floor_m_s = 1.0               # below this speed slip counts as at this speed
+slip_floor_m_s = 1.0               # slip below this speed counts as at it
 
-[wsc]                              # wheel speed control: inner loop, PI
+[wsc]                              # wheel speed control: inner loop
 proportional_gain = 2.6775         # K_p
 integral_gain = 0.4016             # K_i
-filter_time_constant_s = 0.05      # tau_1, s
+filter_time_constant_s = 0.05      # tau_1
 
-[wsc.lead]                         # phase stabilization; for gain stabilization put [wsc.notch] in its place
+[wsc.lead]                         # phase stabilization
 alpha = 0.25962                    # smaller: more lead
-time_constant_s = 0.0078087        # s; the lead is largest around 1 / (2 pi T sqrt(alpha)) Hz
+time_constant_s = 0.0078087
 normalisation = "high_frequency"
 
 [dfo]                              # driving force observer
-time_constant_s = 0.007961783      # tau_DFO, s
+time_constant_s = 0.007961783      # tau_DFO
 gear_ratio = 8.148                 # motor speed / wheel speed
 wheel_inertia_kg_m2 = 4.355        # wheels and dyno rotors
+
+[plant]                            # transfer functions, without dead time
+denominator = [1.0, 71.59, 6376.0, 2.399e5, 3.867e6, 0.0]
+motor_speed = [46.35, 2604.0, 8.768e4, 5.302e4, 8.547e5]
+wheel_speed = [45.99, 5664.0, 6839.0, 1.049e5]
+shaft_torque = [212.7, 5.23e4, 1.947e6, 3.14e7, 0.0]
 `;
 
 const BENCH = `name = "my_bench"
