@@ -95,7 +95,7 @@ def _measured(browser: playwright.Browser, service: Served, turns: int) -> int:
     opened_s = _opened(browser, f"{service.url}/runs/1", _CURVES, turns)
     print(f"{f'{SECONDS} s of {len(CHANNELS)} channels at 1 kHz, curves shown':52} {_text(opened_s, 's')}")
     page = _page(browser, f"{service.url}/runs", _ROWS)
-    page.wait_for_selector(".filters option[value='plan-3']", state="attached")
+    page.locator(".filters option", has_text="plan-3").wait_for(state="attached")
     filtered_ms = []
     for _ in range(turns):
         for value, found in (("plan-3", "1,667 runs"), ("", f"{RUNS:,} runs")):

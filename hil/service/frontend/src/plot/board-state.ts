@@ -19,6 +19,7 @@ export interface BoardState {
 }
 
 export const FOLLOW_S = 30;
+const REST_MS = 150; // browsers take an address that changes in every frame for a mistake, and stop taking it
 
 export function useBoardState(plan: string, channels: readonly string[], live: boolean): BoardState {
   const [query] = useQuery();
@@ -28,23 +29,32 @@ export function useBoardState(plan: string, channels: readonly string[], live: b
   const known = channels.join(",");
   const plots = useMemo(() => (text ? layoutOf(text).map((plot) => ({ ...plot, channels: plot.channels.filter((one) => channels.includes(one)) })) : usualLayout(channels)), [text, known]);
   const time = query.get("t"), marks = query.get("c");
-  const shown = useMemo(() => rangeFrom(time) ?? (live ? { follow: FOLLOW_S } : "whole" as const), [time, live]);
+  const [moving, setMoving] = useState<Shown | null>(null); // while it moves; the address has it when it rests
+  const inAddress = useMemo(() => rangeFrom(time) ?? (live ? { follow: FOLLOW_S } : "whole" as const), [time, live]);
   const cursors = useMemo(() => numbersFrom(marks), [marks]);
   const put = useCallback((name: string, value: string | null) => {
     const changed = new URLSearchParams(location.search);
     if (value) changed.set(name, value); else changed.delete(name);
     setQuery(changed);
   }, []);
+  useEffect(() => {
+    if (moving === null) return undefined;
+    const timer = setTimeout(() => {
+      put("t", moving === "whole" && !live ? null : rangeText(moving));
+      setMoving(null);
+    }, REST_MS);
+    return () => clearTimeout(timer);
+  }, [moving, live]);
   return {
     plots,
-    shown,
+    shown: moving ?? inAddress,
     cursors,
     chosen: Math.min(chosen, Math.max(0, cursors.length - 1)),
     setPlots: (changed) => {
       keep(layoutText(changed));
       put("plots", layoutText(changed));
     },
-    setShown: (changed) => put("t", changed === "whole" && !live ? null : rangeText(changed)),
+    setShown: setMoving,
     setCursors: (changed, which) => {
       if (which !== undefined) setChosen(which);
       put("c", numbersText(changed));
