@@ -1,6 +1,6 @@
 // What a board of plots shows: kept in the address, so that it can be sent, and by the service per person and plan.
 
-import { useCallback, useEffect, useMemo, useState } from "preact/hooks";
+import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { ask, get } from "../api/client.ts";
 import type { Layout } from "../api/types.ts";
 import { setQuery, useQuery } from "../router.ts";
@@ -29,7 +29,8 @@ export function useBoardState(plan: string, channels: readonly string[], live: b
   const known = channels.join(",");
   const plots = useMemo(() => (text ? layoutOf(text).map((plot) => ({ ...plot, channels: plot.channels.filter((one) => channels.includes(one)) })) : usualLayout(channels)), [text, known]);
   const time = query.get("t"), marks = query.get("c");
-  const [moving, setMoving] = useState<Shown | null>(null); // while it moves; the address has it when it rests
+  const [moving, setMoving] = useState<Shown | null>(null); // of a live board, while it moves
+  const resting = useRef(0);
   const inAddress = useMemo(() => rangeFrom(time) ?? (live ? { follow: FOLLOW_S } : "whole" as const), [time, live]);
   const cursors = useMemo(() => numbersFrom(marks), [marks]);
   const put = useCallback((name: string, value: string | null) => {
@@ -37,14 +38,14 @@ export function useBoardState(plan: string, channels: readonly string[], live: b
     if (value) changed.set(name, value); else changed.delete(name);
     setQuery(changed);
   }, []);
-  useEffect(() => {
-    if (moving === null) return undefined;
-    const timer = setTimeout(() => {
-      put("t", moving === "whole" && !live ? null : rangeText(moving));
+  useEffect(() => () => clearTimeout(resting.current), []);
+  const rest = (changed: Shown) => {
+    clearTimeout(resting.current);
+    resting.current = window.setTimeout(() => {
+      put("t", changed === "whole" && !live ? null : rangeText(changed));
       setMoving(null);
-    }, REST_MS);
-    return () => clearTimeout(timer);
-  }, [moving, live]);
+    }, typeof changed === "object" && "from" in changed ? REST_MS : 0);
+  };
   return {
     plots,
     shown: moving ?? inAddress,
@@ -54,7 +55,10 @@ export function useBoardState(plan: string, channels: readonly string[], live: b
       keep(layoutText(changed));
       put("plots", layoutText(changed));
     },
-    setShown: setMoving,
+    setShown: (changed) => {
+      if (live) setMoving(changed); // what follows is held at once
+      rest(changed);
+    },
     setCursors: (changed, which) => {
       if (which !== undefined) setChosen(which);
       put("c", numbersText(changed));
