@@ -52,6 +52,7 @@ export function App(): JSX.Element {
         <Refusal />
         {who.state === "in" ? <View place={place} /> : who.state === "out" ? <SignIn /> : <p class="quiet">{t("Asking the service …")}</p>}
       </main>
+      {who.state === "in" ? <footer class="foot"><a href={to.list("glossary")}>{t("Words of this page")}</a></footer> : null}
       <Palette />
     </>
   );

@@ -127,6 +127,8 @@ def test_a_question_is_answered_on_the_operator_panel(page: playwright.Page, the
         ("campaigns", "Campaigns"),
         ("audit", "Audit log"),
         ("settings", "Settings"),
+        ("glossary", "Words of this page"),
+        ("controllers?write=new", "Write a controller"),
         ("nothing", "No such page"),
     ],
 )

@@ -39,6 +39,7 @@ ADDRESSES = (
     "campaigns",
     "audit",
     "settings",
+    "glossary",
     "nothing",
 )
 

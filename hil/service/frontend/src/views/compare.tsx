@@ -51,7 +51,7 @@ function Choose({ runs, onChange }: { runs: number[]; onChange: (runs: number[])
         </span>
       ))}
       {runs.length < MOST ? (
-        <label>{runs.length ? t("and") : t("Run")}{" "}
+        <label>{runs.length ? t("and") : t("A run")}{" "}
           <select value="" onChange={(event) => onChange([...runs, Number(event.currentTarget.value)])}>
             <option value="" disabled>{t("choose …")}</option>
             {offered.map((run) => <option key={run.id} value={run.id}>{named(run)}</option>)}

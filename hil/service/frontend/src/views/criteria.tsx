@@ -1,6 +1,7 @@
 // Criteria with their values, limits and how much room is left.
 
 import type { JSX } from "preact";
+import { to } from "../addresses.ts";
 import { figure, percent } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { t } from "../i18n/text.ts";
@@ -53,6 +54,7 @@ function Meanings({ of }: { of: Measured[] }): JSX.Element | null {
     <details>
       <summary>{t("What is measured")}</summary>
       <dl class="meanings">{metrics.map((one) => <div key={one}><dt>{metricWords(one)}</dt><dd>{meaningOf(one)}</dd></div>)}</dl>
+      <p class="links"><a href={to.list("glossary")}>{t("Words of this page")}</a></p>
     </details>
   );
 }

@@ -69,6 +69,7 @@ export function wordsOfCriterion({ id, title, source }: Pick<Measured, "id" | "t
   return (title && !(source === "device" && words) ? title : words) || title || id;
 }
 
+export const METRIC_NAMES: readonly string[] = Object.keys(METRICS);
 export const metricWords = (metric: string): string => METRICS[metric]?.[0] ?? metric;
 export const meaningOf = (metric: string): string => METRICS[metric]?.[1] ?? "";
 

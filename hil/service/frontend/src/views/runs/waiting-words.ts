@@ -16,6 +16,7 @@ export interface Waiting {
   kind: "approval" | "missing" | "stop" | "away" | "reservation" | "lease" | "run" | "ending" | "in_use" | "turn" | "soon";
   why: string;
   ends: string; // '' where nothing is to be done
+  until?: string; // ISO 8601, of the moment in `why`
 }
 
 export function whyItWaits(run: Run, { bench, running, queue }: Around): Waiting {
@@ -24,8 +25,8 @@ export function whyItWaits(run: Run, { bench, running, queue }: Around): Waiting
   if (bench.state === "emergency_stop") return { kind: "stop", why: t("It waits for a latched emergency stop of {bench}.", { bench: bench.name }), ends: running ? t("The run under way is being ended; then an engineer resets the stop when it is safe.") : t("When it is safe, an engineer resets the emergency stop.") };
   if (bench.state === "away") return { kind: "away", why: bench.away_since ? t("The agent of {bench} has not been heard of since {moment}.", { bench: bench.name, moment: moment(bench.away_since) }) : t("The agent of {bench} is not connected.", { bench: bench.name }), ends: t("It starts when the agent is connected again.") };
   const held = run.waits_for;
-  if (held) return { kind: "reservation", why: t("It waits for the reservation of {who} until {end}: {reason}.", { who: held.who, end: moment(held.ends), reason: held.reason }), ends: t("It starts after that, or when {who} lets it start.", { who: held.who }) };
-  if (bench.lease && bench.lease !== run.requested_by) return { kind: "lease", why: bench.lease_until ? t("{who} has the bench until {end}.", { who: bench.lease, end: moment(bench.lease_until) }) : t("{who} has the bench.", { who: bench.lease }), ends: t("It starts after that, or when {who} or an engineer ends the reservation.", { who: bench.lease }) };
+  if (held) return { kind: "reservation", why: t("It waits for the reservation of {who} until {end}: {reason}.", { who: held.who, end: moment(held.ends), reason: held.reason }), ends: t("It starts after that, or when {who} lets it start.", { who: held.who }), until: held.ends };
+  if (bench.lease && bench.lease !== run.requested_by) return { kind: "lease", why: bench.lease_until ? t("{who} has the bench until {end}.", { who: bench.lease, end: moment(bench.lease_until) }) : t("{who} has the bench.", { who: bench.lease }), ends: t("It starts after that, or when {who} or an engineer ends the reservation.", { who: bench.lease }), until: bench.lease_until ?? "" };
   if (running && running.id !== run.id) return behind(run, running, queue);
   if (bench.state === "ending") return { kind: "ending", why: t("A run that an earlier service left behind is being ended on {bench}.", { bench: bench.name }), ends: t("It starts after that by itself.") };
   if (bench.state === "in_use") return { kind: "in_use", why: t("Another program drives {bench}.", { bench: bench.name }), ends: t("It starts when that program has ended.") };
@@ -39,7 +40,7 @@ function behind(run: Run, running: Run, queue: Run[]): Waiting {
   const why = running.prompt ? t("Run {run} ({plan}, by {person}) is on the bench and waits for an answer.", values)
     : running.expected_end ? t("Run {run} ({plan}, by {person}) is on the bench, until about {end}.", { ...values, end: moment(running.expected_end) })
       : t("Run {run} ({plan}, by {person}) is on the bench.", values);
-  return { kind: "run", why: before ? `${why} ${inFront(before, queue)}` : why, ends: running.prompt ? t("It starts by itself after that run, which goes on when an operator answers.") : t("It starts by itself when that run has ended and it is its turn.") };
+  return { kind: "run", why: before ? `${why} ${inFront(before, queue)}` : why, ends: running.prompt ? t("It starts by itself after that run, which goes on when an operator answers.") : t("It starts by itself when that run has ended and it is its turn."), until: running.expected_end ?? "" };
 }
 
 // Runs before it that may start as they are.

@@ -5,11 +5,10 @@ import { post, Refused } from "../../api/client.ts";
 import type { Bench, Run } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
-import { moment } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
 import { t } from "../../i18n/text.ts";
 import { useMay, useMe } from "../../session.ts";
-import { Admit } from "../team/expected.tsx";
+import { Admit, Expected } from "../team/expected.tsx";
 import { whyItWaits, type Waiting } from "./waiting-words.ts";
 
 const AGAIN_MS = 2000;
@@ -24,10 +23,10 @@ export function WhyItWaits({ run }: { run: Run }): JSX.Element {
   const found = whyItWaits(run, { bench: missing ? null : known, running, queue });
   return (
     <section class="banner waiting" aria-label={t("Why it waits")}>
-      <p class="lead" role="status">{found.why}</p>
+      <p class="lead" role="status" title={found.until}>{found.why}</p>
       {(found.kind === "stop" || found.kind === "in_use" || found.kind === "ending") && known?.why ? <p><English>{known.why}</English></p> : null}
       {found.ends ? <p>{found.ends}</p> : null}
-      {run.expected_start ? <p>{run.expected_end ? t("Expected from {start} to {end}", { start: moment(run.expected_start), end: moment(run.expected_end) }) : t("Expected from {start}", { start: moment(run.expected_start) })}</p> : null}
+      {run.expected_start ? <p><Expected run={run} /></p> : null}
       <div class="row level"><Ending run={run} kind={found.kind} bench={known} running={running} path={path} /></div>
     </section>
   );
