@@ -215,6 +215,25 @@ def test_runs_are_filtered_sorted_and_compared(page: playwright.Page, there: Ser
     refuse_hard_to_use(page)
 
 
+def test_a_given_recording_is_laid_beside_a_run_from_its_step(page: playwright.Page, there: Served) -> None:
+    to(page, there, "recordings")
+    page.get_by_label("File of a recording").set_input_files(there.data / "runs/000002/recording.mcap")
+    page.get_by_role("button", name="Give the recording").click()
+    expect(heading(page, re.compile("recording.mcap ready"))).to_be_visible()
+    marks = there.get("/runs/2/view")["marks"]
+    step_s = next(mark["step_s"] for mark in marks if mark["kind"] == "segment")
+    to(page, there, "compare?runs=1")
+    choice(page, "Given recording").select_option("1")
+    page.get_by_label("step at, s").fill(f"{step_s:g}")
+    expect(page).to_have_url(re.compile(f"recordings=1%40{step_s:g}|recordings=1@{step_s:g}"))
+    drawn = page.get_by_role(
+        "img", name=re.compile(r"shaft torque of runs 1, recording 1 .* largest 1\d\d, 1\d\d")
+    )
+    expect(drawn).to_be_visible()
+    expect_drawn(page.locator("figure.plot").first, "gain", "phase")
+    refuse_hard_to_use(page)
+
+
 def test_what_is_seen_of_a_run_stands_in_its_address(page: playwright.Page, there: Served) -> None:
     to(page, there, "runs/1")
     plots = page.locator("figure.plot")

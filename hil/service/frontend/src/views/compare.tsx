@@ -13,6 +13,8 @@ import { roleOf } from "../plot/frame.ts";
 import { useQuery } from "../router.ts";
 import { kindInWords } from "../ui/kinds.ts";
 import { linkTo, Heading, Scroll, Section } from "../ui/parts.tsx";
+import { recordingsFrom, type Beside } from "./compare-beside.ts";
+import { ChooseRecordings } from "./compare-recordings.tsx";
 import { changeOf, type Change } from "./compare-changes.ts";
 import { ComparedCriteria } from "./compare-criteria.tsx";
 import { ComparePlot, stretchOf } from "./compare-plot.tsx";
@@ -28,11 +30,18 @@ export function Compare(): JSX.Element {
     next.set("runs", changed.join(","));
     setQuery(next, true);
   };
+  const beside = recordingsFrom(query.get("recordings"));
+  const setBeside = (text: string) => {
+    const next = new URLSearchParams(query);
+    if (text) next.set("recordings", text); else next.delete("recordings");
+    setQuery(next, true);
+  };
   return (
     <>
       <Heading>{t("Compare runs")}</Heading>
       <Choose runs={runs} onChange={set} />
-      {runs.length >= 2 ? <Compared key={runs.join()} runs={runs} query={query} setQuery={setQuery} /> : <p class="quiet">{tx("Choose two runs or more of one plan; in the <a>table of runs</a> they can be ticked.", { a: linkTo(to.list("runs")) })}</p>}
+      {runs.length ? <ChooseRecordings chosen={beside} runs={runs.length} onChange={setBeside} /> : null}
+      {runs.length >= 2 || (runs.length && beside.length) ? <Compared key={runs.join()} runs={runs} beside={beside} query={query} setQuery={setQuery} /> : <p class="quiet">{tx("Choose two runs or more of one plan; in the <a>table of runs</a> they can be ticked.", { a: linkTo(to.list("runs")) })}</p>}
     </>
   );
 }
@@ -102,7 +111,7 @@ function segmentsOf(views: RunView[]): Common[] {
   return names.filter((name) => views.every((view) => stretchOf(view, name, false) !== null)).map((id) => ({ id, channels }));
 }
 
-function Compared({ runs, query, setQuery }: { runs: number[]; query: URLSearchParams; setQuery: (query: URLSearchParams) => void }): JSX.Element {
+function Compared({ runs, beside, query, setQuery }: { runs: number[]; beside: Beside[]; query: URLSearchParams; setQuery: (query: URLSearchParams) => void }): JSX.Element {
   const { views, pairs, error } = useFound(runs);
   if (error) return <p class="bad" role="alert"><English>{error}</English></p>;
   if (!views) return <p class="quiet">{t("Loading the runs …")}</p>;
@@ -115,11 +124,12 @@ function Compared({ runs, query, setQuery }: { runs: number[]; query: URLSearchP
     setQuery(next);
   };
   const channels = (query.get("channels")?.split(",") ?? CHANNELS).filter((one) => segment?.channels.includes(one));
-  const stretches = segment ? views.map((view) => stretchOf(view, segment.id, near)).filter((one) => one !== null) : [];
+  const ofRuns = segment ? views.map((view) => stretchOf(view, segment.id, near)).filter((one) => one !== null) : [];
+  const stretches = [...ofRuns, ...beside.map(({ id, step }) => ({ recording: id, run: 0, step, from: ofRuns[0]?.from ?? 0, to: ofRuns[0]?.to ?? 0 }))];
   return (
     <>
       {pairs ? pairs.map((pair) => <Lead key={pair.other.id} pair={pair} />) : <p class="quiet">{t("Comparing criteria and inputs …")}</p>}
-      {pairs ? <Differences pairs={pairs} /> : null}
+      {pairs?.length ? <Differences pairs={pairs} /> : null}
       {segment ? (
         <Section title={t("Traces from the step")} label="traces">
           <div class="row small">
@@ -131,7 +141,7 @@ function Compared({ runs, query, setQuery }: { runs: number[]; query: URLSearchP
           <div class="plots part">{channels.map((channel) => <ComparePlot key={channel} channel={channel} unit={views[0]?.channels[channel] ?? ""} stretches={stretches} />)}</div>
         </Section>
       ) : null}
-      {pairs ? <ComparedCriteria pairs={pairs} /> : null}
+      {pairs?.length ? <ComparedCriteria pairs={pairs} /> : null}
     </>
   );
 }
