@@ -26,13 +26,15 @@ _ASKED = re.compile(r"driving torque ref of runs 1, 2 .* largest 100, 150 N m")
 
 @pytest.fixture(scope="module")
 def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    """A service with two runs that ended: of 100 and of 150 N m."""
+    """A service with two runs that ended, of 100 and of 150 N m, and one of a plan with a long title."""
     folder = tmp_path_factory.mktemp("app")
     with served(folder / "data", "--rate", "1000", state=folder / "state") as service:
         service.give("asking", _LATER)
         service.give("short", SHORT.replace("name: short", "name: short\ntitle: A short plan"))
         for torque_nm in (100, 150):
             service.over(service.queue(values={"torque_nm": torque_nm}))
+        service.give("long", SHORT.replace("name: short", f"name: long\ntitle: {'W' * 100}"))
+        service.over(service.queue("long"))  # a name that has no place to break
         yield service
 
 
@@ -225,6 +227,7 @@ def test_a_given_recording_is_laid_beside_a_run_from_its_step(page: playwright.P
     to(page, there, "compare?runs=1")
     choice(page, "Given recording").select_option("1")
     page.get_by_label("step at, s").fill(f"{step_s:g}")
+    page.keyboard.press("Tab")
     expect(page).to_have_url(re.compile(f"recordings=1%40{step_s:g}|recordings=1@{step_s:g}"))
     drawn = page.get_by_role(
         "img", name=re.compile(r"shaft torque of runs 1, recording 1 .* largest 1\d\d, 1\d\d")

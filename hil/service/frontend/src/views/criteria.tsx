@@ -23,7 +23,7 @@ export function Criteria({ of, onSegment }: { of: Measured[]; onSegment?: (segme
                   {one.reason ? <span class="reason"><English>{one.reason}</English></span> : null}
                 </th>
                 <td class="number">{figure(one.value, one.unit)}</td>
-                <td class="number">{allowed(one)}</td>
+                <td class="number limit">{allowed(one)}</td>
                 <td class="number">{one.margin === null || one.margin === undefined ? "–" : percent(one.margin, 1)}</td>
                 <td><Badge kind={one.verdict} /></td>
               </tr>

@@ -51,7 +51,7 @@ function Card({ of: { bench, running, queue, latest }, nowMs, alone }: { of: Sho
           <progress max={1} value={running.share ?? 0} aria-label={t("Progress of run {run}", { run: running.id })} />
           <p>{left === null ? <English>{running.doing}</English> : t("about {time} left", { time: roughly(left) })}</p>
         </>
-      ) : bench.why ? <p><English>{bench.why}</English></p> : null}
+      ) : bench.why ? <p class="why"><English>{bench.why}</English></p> : null}
       {next ? <p class="quiet">{queue.length > 1 ? t("Next: {plan}, by {person}, and {count} more", { plan: titleOf(next), person: next.requested_by, count: queue.length - 1 }) : t("Next: {plan}, by {person}", { plan: titleOf(next), person: next.requested_by })}</p> : null}
       <ol aria-label={t("Last verdicts")}>
         {latest.slice(0, alone ? VERDICTS.one : VERDICTS.all).map((run) => (
