@@ -28,6 +28,7 @@ const ACTIONS: Record<string, string> = {
   "recording given": t("recording given"), "recording read anew": t("recording read anew"), "recording removed": t("recording removed"), "picture given": t("picture given"), "picture removed": t("picture removed"),
   "note added": t("note added"), "note removed": t("note removed"), "tag added": t("tag added"), "tag removed": t("tag removed"), campaign: t("began a campaign"), "campaign cancelled": t("campaign cancelled"), "campaign removed": t("campaign removed"), "campaign resumed": t("campaign resumed"),
   "study cancelled": t("study cancelled"), "study removed": t("study removed"), identification: t("identification"), diagnosis: t("diagnosis"), tuning: t("tuning"), autotuning: t("autotuning"),
+  reserve: t("reserved the bench"), "reservation removed": t("reservation removed"), "run admitted": t("run admitted"), "hand-over": t("note for the next shift"), "bench registered": t("bench registered"), take: t("run taken"), "sign in refused": t("sign-in refused"),
   "log in": t("signed in"), "sign in": t("signed in"), "signed out": t("signed out"), "token made": t("token made"), "token revoked": t("token revoked"), "run delivered": t("run delivered"), "run not taken": t("run not taken"), service: t("service"),
 };
 
