@@ -30,6 +30,7 @@ PAGES = {
     "second_process": _BENCHMARKS,
     "run_list": _BENCHMARKS,
     "run_view": _BENCHMARKS,
+    "page": _BENCHMARKS,
 }
 _BLOCK = re.compile(r"<!-- figures: (?P<part>\w+) -->\n(?P<text>.*?)<!-- end of figures -->", re.DOTALL)
 

@@ -43,7 +43,7 @@ def main(runs: int = RUNS) -> int:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "data").mkdir()
-        _fill(folder / "data/service.sqlite", runs)
+        fill(folder / "data/service.sqlite", runs)
         with served(folder / "data", "--rate", "1000", state=folder / "state") as service:
             for _ in range(TURNS):  # a service that has just begun still reads and checks its folder
                 service.get("/me")
@@ -68,7 +68,8 @@ def _asked(service: Served, path: str) -> tuple[int, list[float]]:
     return found.get("total", 0), times_ms
 
 
-def _fill(file: Path, runs: int) -> None:
+def fill(file: Path, runs: int) -> None:
+    """Runs that have ended, with their criteria, in a new database."""
     engine = open_database(f"sqlite:///{file}")
     random, tables = np.random.default_rng(1), Base.metadata.tables
     with engine.begin() as connection:

@@ -36,7 +36,7 @@ def main(seconds: int = SECONDS) -> int:
         folder = Path(name)
         runs = folder / "data/runs/000001"
         runs.mkdir(parents=True)
-        _record(runs / "recording.mcap", seconds)
+        record(runs / "recording.mcap", seconds)
         size_mb = (runs / "recording.mcap").stat().st_size / 1e6
         engine = open_database(f"sqlite:///{folder / 'data/service.sqlite'}")
         with engine.begin() as connection:
@@ -60,7 +60,8 @@ def main(seconds: int = SECONDS) -> int:
     return int(opened_s > MOST_S or peak != PEAK)
 
 
-def _record(path: Path, seconds: int) -> None:
+def record(path: Path, seconds: int) -> None:
+    """A recording with one sample that stands out."""
     random = np.random.default_rng(1)
     writer = RecordingWriter(path, ["time_s", *CHANNELS], ["rmcu"])
     for first in range(0, seconds * RATE_HZ, _BLOCK):

@@ -44,12 +44,14 @@ class BusLoop:
     - `serve`: callbacks for what comes on other wires, at most 10 ms old.
     - `on_drained`: callbacks for when every wire has been looked at.
     - `stop_requested`: set by a signal handler; the next step raises InterruptError, unless `shielded`.
+    - `stop_reason`: what that error says.
     """
 
     def __init__(self, clock: Clock, wires: list[Wire]) -> None:
         self.clock = clock
         self.wires = wires
         self.stop_requested = False
+        self.stop_reason = "stopped by the operator"
         self.shielded = False
         self.tick_s = clock.now_s()  # when the present tick was meant
         self._anchor_s, self._since_anchor = clock.now_s(), 0  # a sum of ticks would drift
@@ -239,7 +241,7 @@ class BusLoop:
     def _wait_for_tick(self, ticks: int) -> None:
         if self.stop_requested and not self.shielded:
             self.stop_requested = False
-            raise InterruptError("stopped by the operator")
+            raise InterruptError(self.stop_reason)
         self._since_anchor += ticks
         self.tick_s = next_s = self._anchor_s + self._since_anchor * TICK_S
         self.clock.sleep_until(next_s)

@@ -110,7 +110,7 @@ class _Agent:
         self._closing = True
         for bench in self._benches.values():
             if bench.running is not None:
-                bench.running.process.end()
+                bench.running.process.leave()
         last_s = math.inf
         while self._tasks and self._request.stop.times < 2 and time.monotonic() < last_s:
             await asyncio.wait(self._tasks, timeout=_LOOK_S)

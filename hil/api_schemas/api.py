@@ -183,6 +183,7 @@ class BenchData(_Data):
     limits: dict[str, float] = Field(description="largest magnitude by channel, in the channel's unit")
     units: dict[str, str] = Field(description="unit by channel, of all that is recorded")
     lease: str = Field("", description="user who has it for a while from now on")
+    lease_until: datetime.datetime | None = Field(None, description="when that ends")
     reserved_by: str = Field("", description="user whose reservation is under way")
     machine: str = Field("", description="machine of its agent; '' for a bench of the service")
     stop_confirmed: bool = Field(True, description="false while an agent has not confirmed an emergency stop")

@@ -36,6 +36,10 @@ class ComparedCriterion(_Data):
     values: tuple[float | None, float | None]
     verdicts: tuple[CriterionVerdict, CriterionVerdict]
     relative: float | None
+    better: Literal["lower", "higher", ""] = Field(
+        "", description="side on which its limits let it lie; '' for limits on both, none, or different ones"
+    )
+    source: Literal["plan", "device"] = Field("plan", description="source: the plan, or the device checks")
 
 
 class ComparedResponse(_Data):

@@ -15,6 +15,7 @@ from hil.core.files import make_directory, write_atomically
 from hil.core.result import RunResult
 from hil.engine import RECORDING
 from hil.engine.ipc.ipc_messages import EmergencyAsked, OperatorText, Progressed, Question, Refused, RunAsked
+from hil.engine.run.operator import GONE_REASON
 from hil.execution.benches import Bench
 from hil.execution.run_process import RunProcess, result_in
 
@@ -138,7 +139,7 @@ def end_of_left(folder: Path, who: str) -> RunEnd:
     """How a run ended whose service or agent (`who`) was killed; its process has ended."""
     result = result_in(folder)
     reason = (_KEPT if (folder / RECORDING).exists() else _NOTHING).format(who=who)
-    if result is not None and result.reason:
+    if result is not None and result.reason not in ("", GONE_REASON):
         reason += f": {result.reason}"
     return RunEnd("interrupted", result=result, reason=reason)
 

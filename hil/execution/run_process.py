@@ -12,7 +12,7 @@ from hil.core.errors import BenchError
 from hil.core.files.locks import HeldError, lock_on
 from hil.core.result import RunResult
 from hil.engine.ipc.ipc_messages import EmergencyAsked, Message, RunAsked, Typed, from_line, to_line
-from hil.engine.run.operator import END, PAUSE, RESUME
+from hil.engine.run.operator import END, GONE, PAUSE, RESUME
 from hil.execution.background import start_process
 from hil.execution.data_folder import LOCK
 
@@ -69,6 +69,11 @@ class RunProcess:
     def end(self) -> None:
         """End the run, with its end steps."""
         self._say(Typed(line=END))
+        self.answered()
+
+    def leave(self) -> None:
+        """End the run, with its end steps, because who executes it ends."""
+        self._say(Typed(line=GONE))
         self.answered()
 
     def stop_in_emergency(self, asked: EmergencyAsked) -> None:

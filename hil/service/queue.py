@@ -157,7 +157,7 @@ class Queue:
         self._wake.set()
         for place in self._places.values():
             if place.running is not None:
-                place.running.process.end()
+                place.running.process.leave()
         while self._tasks and not hurry():
             await asyncio.wait(self._tasks, timeout=0.1)
 

@@ -14,7 +14,16 @@ from pathlib import Path
 
 from sqlalchemy import Engine
 
-from hil.api_schemas.api import OVER, BenchData, BenchState, ForecastData, Me, RunData, RunState
+from hil.api_schemas.api import (
+    OVER,
+    BenchData,
+    BenchState,
+    ForecastData,
+    LeaseData,
+    Me,
+    RunData,
+    RunState,
+)
 from hil.api_schemas.campaign import CampaignData
 from hil.api_schemas.recording import RecordingData
 from hil.api_schemas.study import StudyData
@@ -87,7 +96,7 @@ class Waiting:
 
     runs: list[RunData] = field(default_factory=list)
     count: int = 0
-    lease: str = ""
+    lease: LeaseData | None = None
     reserved_by: str = ""
 
 
@@ -269,7 +278,8 @@ class Service:
             waiting=waiting.count,
             limits=bench.limits,
             units=bench.units,
-            lease=waiting.lease,
+            lease=waiting.lease.holder if waiting.lease else "",
+            lease_until=waiting.lease.until if waiting.lease else None,
             reserved_by=waiting.reserved_by,
             machine=agent.machine if agent else "",
             stop_confirmed=not (isinstance(bench, RemoteBench) and bench.stop_by),
@@ -285,8 +295,8 @@ class Service:
             )
             found.sort(key=lambda run: (-run.priority, run.id))
             found = self.queue_forecast.of_queue(bench, found)
-            holder, whose = lease.holder if lease else "", self.queue_forecast.reserved_by(bench)
-            self._waiting[bench] = Waiting(found, self.runs.waiting(bench), holder, whose)
+            whose = self.queue_forecast.reserved_by(bench)
+            self._waiting[bench] = Waiting(found, self.runs.waiting(bench), lease, whose)
         return self._waiting[bench]
 
     def with_progress(self, run: RunData) -> RunData:

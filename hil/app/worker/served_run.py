@@ -60,6 +60,7 @@ class _Service(LoggedFeedback):
     def typed(self) -> list[str | EmergencyAsked]:
         """What operators asked for since the last call; that the service has gone ends the run."""
         from hil.engine.ipc.ipc_messages import EmergencyAsked, Typed
+        from hil.engine.run.operator import GONE
 
         lines: list[str | EmergencyAsked] = []
         for message in [*(self._stop_line.fetch() if self._stop_line else ()), *self._pipe.fetch()]:
@@ -69,7 +70,7 @@ class _Service(LoggedFeedback):
                 lines.append(message)
         if self._pipe.gone and not self._asked_to_end:
             self._asked_to_end = True
-            lines.append("q")
+            lines.append(GONE)
         return lines
 
     @contextlib.contextmanager

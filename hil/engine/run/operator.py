@@ -13,6 +13,9 @@ from hil.engine.ipc.ipc_messages import EmergencyAsked, Question
 LOOK_S = 0.02  # how often it is looked whether a line was typed
 _VIRTUAL_TICK_S = 0.01  # what passes at once while no one has to be awaited
 PAUSE, RESUME, END, EMERGENCY = "p", "r", "q", "e"
+#: End of transmission (ASCII), which no person types: the service or agent that executed the run has gone.
+GONE = "\x04"
+GONE_REASON = "the service or agent that executed the run ended"
 
 
 class Operator:
@@ -64,7 +67,9 @@ class Operator:
             if word == EMERGENCY:
                 self._stop(typed_emergency())
                 continue
-            self._loop.stop_requested |= word == END
+            if word == GONE:
+                self._loop.stop_reason = GONE_REASON
+            self._loop.stop_requested |= word in (END, GONE)
             self._wants_pause |= word == PAUSE
             self._wants_to_go_on |= word == RESUME
             self._answer = line.strip()
@@ -153,7 +158,7 @@ class Operator:
         """Also where the end steps are shielded: a person who is asked may decline."""
         if self._loop.stop_requested:
             self._loop.stop_requested = False
-            raise InterruptError("stopped by the operator")
+            raise InterruptError(self._loop.stop_reason)
 
 
 def typed_emergency() -> EmergencyStopError:

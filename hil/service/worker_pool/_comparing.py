@@ -46,6 +46,8 @@ def comparison(first: list[str], other: list[str]) -> dict[str, Any]:
                 "values": [number(value) for value in row.values],
                 "verdicts": row.verdicts,
                 "relative": row.relative[1],
+                "better": _better(row.id, one, two),
+                "source": _source(row.id, one),
             }
             for row in found.criteria
         ],
@@ -124,6 +126,17 @@ def _by_name(error: BadInputError, *runs: ComparedRun) -> BadInputError:
         path = str(run.recording.source)
         what, where = what.replace(path, run.name), where.replace(path, run.name)
     return BadInputError(what, where=where, fix=error.fix)
+
+
+def _better(criterion: str, *runs: ComparedRun) -> str:
+    """Which way is better by the limits of a criterion: `lower`, `higher`, or '' where they do not say."""
+    ones = [one for run in runs for one in run.result.criteria if one.id == criterion]
+    bounded = {(one.upper is not None or one.below != "", one.lower is not None) for one in ones}
+    return "lower" if bounded == {(True, False)} else "higher" if bounded == {(False, True)} else ""
+
+
+def _source(criterion: str, run: ComparedRun) -> str:
+    return next((one.source for one in run.result.criteria if one.id == criterion), "plan")
 
 
 def _common(one: ComparedRun, two: ComparedRun) -> list[str]:

@@ -29,6 +29,8 @@ def test_criteria_stand_side_by_side_and_what_was_given_differently_is_named(
     ]
     peak = found.criteria[0]
     assert peak.relative == pytest.approx(peak.values[1] / peak.values[0] - 1)  # type: ignore[operator]
+    assert (peak.better, peak.source) == ("lower", "plan")
+    assert {one.better for one in found.criteria if one.id == "s.arrival"} == {""}
     assert 0.1 < found.distance < 0.3  # type: ignore[operator]
     assert [one.id for one in found.segments] == ["s"]
     assert found.segments[0].start_s == pytest.approx(-0.2)

@@ -119,7 +119,7 @@ def test_a_killed_service_loses_nothing_and_runs_nothing_twice(tmp_path: Path) -
     with served(data, state=state) as service:
         over = service.over(cut)
         assert (over["state"], over["safe_state"]) == ("interrupted", "confirmed")
-        assert "the service ended during the run" in over["reason"]
+        assert over["reason"] == "the service ended during the run; data measured before that is kept"
         assert "recording.mcap" in over["files"]
         assert service.over(waiting)["exit_code"] == 0
         assert len(service.get("/runs")) == 2
@@ -136,6 +136,7 @@ def test_ending_the_service_ends_its_run_safely(tmp_path: Path) -> None:
         assert service.process.wait(30) == 130
     result = json.loads((data / "runs/000001/result.json").read_text())
     assert result["safe_state"] == "confirmed"
+    assert result["reason"] == "the service or agent that executed the run ended"
 
 
 def test_a_second_service_and_an_open_one_without_tokens_are_refused(service: Served, tmp_path: Path) -> None:

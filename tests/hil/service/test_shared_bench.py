@@ -32,6 +32,14 @@ def clients(tokens: tuple[Served, dict[str, str]]) -> Iterator[dict[str, Client]
         found["admin"].remove_reservation("sim", bench.id)
 
 
+def test_a_bench_says_until_when_it_is_leased(clients: dict[str, Client]) -> None:
+    operator = clients["operator"]
+    lease = operator.lease("sim", 60.0)
+    assert operator.bench("sim").lease_until == lease.until
+    operator.give_back("sim")
+    assert operator.bench("sim").lease_until is None
+
+
 def test_a_queued_run_waits_for_a_reservation_and_says_why(
     clients: dict[str, Client], tokens: tuple[Served, dict[str, str]]
 ) -> None:

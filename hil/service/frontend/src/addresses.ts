@@ -3,7 +3,7 @@
 import { t } from "./i18n/text.ts";
 
 export type Place =
-  | { view: "benches" | "runs" | "compare" | "trends" | "plans" | "models" | "controllers" | "bench-files" | "design" | "recordings" | "identifications" | "diagnoses" | "tunings" | "campaigns" | "audit" | "settings" }
+  | { view: "benches" | "runs" | "compare" | "trends" | "plans" | "models" | "controllers" | "bench-files" | "design" | "recordings" | "identifications" | "diagnoses" | "tunings" | "campaigns" | "audit" | "settings" | "glossary" }
   | { view: "bench" | "panel"; bench: string }
   | { view: "wall"; bench: string | null } // null: all benches
   | { view: "run"; run: number }
@@ -11,7 +11,7 @@ export type Place =
   | { view: "recording" | "identification" | "diagnosis" | "tuning" | "campaign"; id: number }
   | { view: "missing"; path: string };
 
-const LISTS = ["benches", "runs", "compare", "trends", "plans", "models", "controllers", "bench-files", "design", "recordings", "identifications", "diagnoses", "tunings", "campaigns", "audit", "settings"] as const;
+const LISTS = ["benches", "runs", "compare", "trends", "plans", "models", "controllers", "bench-files", "design", "recordings", "identifications", "diagnoses", "tunings", "campaigns", "audit", "settings", "glossary"] as const;
 const NAMED = { plans: "plan", models: "model", controllers: "controller", "bench-files": "bench-file" } as const;
 const NUMBERED = { recordings: "recording", identifications: "identification", diagnoses: "diagnosis", tunings: "tuning", campaigns: "campaign" } as const;
 
@@ -77,7 +77,7 @@ export const to = {
 
 const TITLES: Record<(typeof LISTS)[number], string> = {
   benches: t("Benches"), runs: t("Runs"), compare: t("Compare runs"), trends: t("Trends"), plans: t("Plans"), models: t("Models"), controllers: t("Controllers"), "bench-files": t("Bench files"),
-  design: t("Design a controller"), recordings: t("Recordings"), identifications: t("Identifications"), diagnoses: t("Diagnoses"), tunings: t("Tune a controller"), campaigns: t("Campaigns"), audit: t("Audit log"), settings: t("Settings"),
+  design: t("Design a controller"), recordings: t("Recordings"), identifications: t("Identifications"), diagnoses: t("Diagnoses"), tunings: t("Tune a controller"), campaigns: t("Campaigns"), audit: t("Audit log"), settings: t("Settings"), glossary: t("Words of this page"),
 };
 
 export function titleOf(place: Place): string {

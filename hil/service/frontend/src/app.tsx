@@ -3,18 +3,19 @@
 import type { JSX } from "preact";
 import { useEffect } from "preact/hooks";
 import { findStopPost, Refused } from "./api/client.ts";
-import { titleOf, to, type Place } from "./addresses.ts";
+import { titleOf, to } from "./addresses.ts";
 import { refusal } from "./data.ts";
 import { English } from "./i18n/english.tsx";
 import { t } from "./i18n/text.ts";
 import { usePlace, useTitle } from "./router.ts";
 import { session } from "./session.ts";
-import { MENU } from "./shell/commands.ts";
+import { Menu } from "./shell/menu.tsx";
 import { Palette, paletteOpen } from "./shell/palette.tsx";
 import { SignIn, signOut } from "./shell/sign-in.tsx";
 import { benchInSight, StopButton } from "./shell/stop.tsx";
 import { useStore } from "./store.ts";
 import { kindInWords } from "./ui/kinds.ts";
+import { LostNotice } from "./views/bench-banner.tsx";
 import { View } from "./views/view.tsx";
 
 const STOP_POST_MS = 5000;
@@ -47,22 +48,13 @@ export function App(): JSX.Element {
         {who.state === "in" ? <Menu place={place} /> : null}
       </header>
       <main id="main" tabIndex={-1}>
+        <LostNotice />
         <Refusal />
         {who.state === "in" ? <View place={place} /> : who.state === "out" ? <SignIn /> : <p class="quiet">{t("Asking the service …")}</p>}
       </main>
+      {who.state === "in" ? <footer class="foot"><a href={to.list("glossary")}>{t("Words of this page")}</a></footer> : null}
       <Palette />
     </>
-  );
-}
-
-function Menu({ place }: { place: Place }): JSX.Element {
-  const of = { bench: "benches", panel: "benches", run: "runs", plan: "plans", model: "models", controller: "controllers", "bench-file": "benches", "bench-files": "benches", recording: "recordings", identification: "identifications", diagnosis: "diagnoses", tuning: "tunings", campaign: "campaigns" } as Record<string, string>;
-  const list = of[place.view] ?? place.view;
-  useEffect(() => document.querySelector(".menu [aria-current]")?.scrollIntoView({ block: "nearest", inline: "nearest" }), [list]); // of a narrow screen
-  return (
-    <nav class="menu" aria-label={t("Pages")}>
-      {MENU.map(([view, name]) => <a key={view} href={to.list(view)} aria-current={view === list ? "page" : undefined}>{name}</a>)}
-    </nav>
   );
 }
 

@@ -39,7 +39,7 @@ export function digitsOf(step: number): number {
 }
 
 export const percent = (share: number, digits = 0): string =>
-  formatOf({ style: "percent", minimumFractionDigits: digits, maximumFractionDigits: digits }).format(share);
+  formatOf({ style: "percent", minimumFractionDigits: digits, maximumFractionDigits: digits }).format(share).replace("-", "−");
 
 export const whole = (value: number): string => formatOf({ maximumFractionDigits: 0 }).format(value);
 

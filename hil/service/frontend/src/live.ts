@@ -2,6 +2,7 @@
 
 import { useEffect, useState } from "preact/hooks";
 import { API } from "./api/client.ts";
+import { silent } from "./api/reached.ts";
 import type { Bench, Run } from "./api/types.ts";
 import { Store, useStore } from "./store.ts";
 
@@ -147,4 +148,7 @@ function open(bench: string, channels: string[], live: Live, onSamples: (samples
   return () => { events.close(); clearInterval(timer); lost.value = false; };
 }
 
-export const useLost = (): boolean => useStore(lost);
+export function useLost(): boolean {
+  const events = useStore(lost), asked = useStore(silent);
+  return events || asked;
+}

@@ -7,7 +7,7 @@ import pytest
 from drivers import BusLoop
 from hil.core.errors import EmergencyStopError, InterruptError
 from hil.engine.ipc.ipc_messages import EmergencyAsked
-from hil.engine.run.operator import LOOK_S, Operator
+from hil.engine.run.operator import GONE, GONE_REASON, LOOK_S, Operator
 from tests.clocks import SteppedClock
 from tests.operators import Answering, Silent
 
@@ -42,6 +42,16 @@ def test_single_letters_are_orders(lines: list[str], paused: bool, resumed: bool
     assert (operator.take_pause(), operator.take_resume()) == (paused, resumed)
     assert (operator.take_pause(), operator.take_resume()) == (False, False)  # each counts once
     assert loop.stop_requested is stopped
+
+
+@pytest.mark.parametrize("virtual", [False, True])
+def test_a_run_whose_service_has_gone_was_not_stopped_by_the_operator(virtual: bool) -> None:
+    terminal = Silent()
+    operator, _ = at(terminal, virtual=virtual)
+    terminal.waiting = [GONE]
+    with pytest.raises(InterruptError) as caught:
+        operator.wait_for(lambda: False, 1.0)
+    assert caught.value.what == GONE_REASON
 
 
 @pytest.mark.parametrize("line", ["e", "E", " e\n"])

@@ -15,7 +15,7 @@ test("what an address was written from is read from it", () => {
   assert.deepEqual(placeOf(to.benchFile("rear_axle")), { view: "bench-file", name: "rear_axle" });
   assert.deepEqual(placeOf(to.recording(5)), { view: "recording", id: 5 });
   assert.deepEqual(placeOf(to.campaign(4)), { view: "campaign", id: 4 });
-  for (const view of ["benches", "runs", "compare", "trends", "plans", "models", "controllers", "bench-files", "design", "recordings", "identifications", "diagnoses", "campaigns", "audit", "settings"] as const) assert.deepEqual(placeOf(to.list(view)), { view });
+  for (const view of ["benches", "runs", "compare", "trends", "plans", "models", "controllers", "bench-files", "design", "recordings", "identifications", "diagnoses", "campaigns", "audit", "settings", "glossary"] as const) assert.deepEqual(placeOf(to.list(view)), { view });
 });
 
 test("the address without a view is that of the benches", () => {

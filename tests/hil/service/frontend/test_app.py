@@ -26,13 +26,15 @@ _ASKED = re.compile(r"driving torque ref of runs 1, 2 .* largest 100, 150 N m")
 
 @pytest.fixture(scope="module")
 def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    """A service with two runs that ended: of 100 and of 150 N m."""
+    """A service with two runs that ended, of 100 and of 150 N m, and one of a plan with a long title."""
     folder = tmp_path_factory.mktemp("app")
     with served(folder / "data", "--rate", "1000", state=folder / "state") as service:
         service.give("asking", _LATER)
         service.give("short", SHORT.replace("name: short", "name: short\ntitle: A short plan"))
         for torque_nm in (100, 150):
             service.over(service.queue(values={"torque_nm": torque_nm}))
+        service.give("long", SHORT.replace("name: short", f"name: long\ntitle: {'W' * 100}"))
+        service.over(service.queue("long"))  # a name that has no place to break
         yield service
 
 
@@ -50,7 +52,7 @@ def test_a_plan_is_foreseen_queued_watched_stopped_and_found(page: playwright.Pa
     page.get_by_role("button", name="Emergency stop sim").click()
     there.over(run)
     expect(page.get_by_text("error", exact=True)).to_be_visible()
-    expect(region(page, "Segments and events")).to_contain_text("safe_state")
+    expect(region(page, "Segments and events")).to_contain_text("safe stateconfirmed")
     expect(page.locator(".facts")).to_contain_text("safe stateconfirmed")
     with page.expect_popup() as report:
         page.get_by_role("link", name="report", exact=True).click()
@@ -78,7 +80,7 @@ def test_a_run_is_queued_and_ended_by_keyboard_alone(page: playwright.Page, ther
     expect(page.get_by_text("Is the cage shut?")).to_be_visible()
     page.get_by_role("button", name="End the run").focus()
     page.keyboard.press("Enter")
-    expect(page.get_by_text("stopped by the operator")).to_be_visible()
+    expect(region(page, "Why it did not pass")).to_contain_text("stopped by the operator")
 
 
 def test_a_service_without_news_is_not_taken_for_lost(page: playwright.Page, there: Served) -> None:
@@ -127,6 +129,8 @@ def test_a_question_is_answered_on_the_operator_panel(page: playwright.Page, the
         ("campaigns", "Campaigns"),
         ("audit", "Audit log"),
         ("settings", "Settings"),
+        ("glossary", "Words of this page"),
+        ("controllers?write=new", "Write a controller"),
         ("nothing", "No such page"),
     ],
 )
@@ -196,7 +200,13 @@ def test_runs_are_filtered_sorted_and_compared(page: playwright.Page, there: Ser
     inputs = region(page, "Different inputs").locator("table")
     expect(inputs).to_contain_text("variables.torque_nm.default")
     expect(inputs).to_contain_text("150")
-    expect(region(page, "Criteria").locator("table").first).to_contain_text("+")
+    criteria = region(page, "Criteria").locator("table").first
+    expect(criteria.get_by_role("columnheader", name="run 2 − run 1")).to_be_visible()
+    expect(criteria.get_by_role("row", name=re.compile("Peak of the shaft torque"))).to_contain_text(
+        re.compile(r"≤ 400.N m.*\+\d.*N m \(\+\d.*%\)worse")
+    )
+    expect(criteria.get_by_role("row", name=re.compile("s.arrival"))).not_to_contain_text("worse")
+    expect(page.get_by_text("Criteria of run 2 against run 1")).to_be_visible()
     plots = page.locator("figure.plot")
     expect(plots.first.get_by_role("img", name=_PEAKS)).to_be_visible()
     for at in range(3):
@@ -204,6 +214,26 @@ def test_runs_are_filtered_sorted_and_compared(page: playwright.Page, there: Ser
     choice(page, "Stretch").select_option("whole")
     choice(page, "Channel").select_option("driving_torque_ref_nm")
     expect(page.get_by_role("img", name=_ASKED)).to_be_visible()
+    refuse_hard_to_use(page)
+
+
+def test_a_given_recording_is_laid_beside_a_run_from_its_step(page: playwright.Page, there: Served) -> None:
+    to(page, there, "recordings")
+    page.get_by_label("File of a recording").set_input_files(there.data / "runs/000002/recording.mcap")
+    page.get_by_role("button", name="Give the recording").click()
+    expect(heading(page, re.compile("recording.mcap ready"))).to_be_visible()
+    marks = there.get("/runs/2/view")["marks"]
+    step_s = next(mark["step_s"] for mark in marks if mark["kind"] == "segment")
+    to(page, there, "compare?runs=1")
+    choice(page, "Given recording").select_option("1")
+    page.get_by_label("step at, s").fill(f"{step_s:g}")
+    page.keyboard.press("Tab")
+    expect(page).to_have_url(re.compile(f"recordings=1%40{step_s:g}|recordings=1@{step_s:g}"))
+    drawn = page.get_by_role(
+        "img", name=re.compile(r"shaft torque of runs 1, recording 1 .* largest 1\d\d, 1\d\d")
+    )
+    expect(drawn).to_be_visible()
+    expect_drawn(page.locator("figure.plot").first, "gain", "phase")
     refuse_hard_to_use(page)
 
 
@@ -250,6 +280,39 @@ def test_a_run_is_asked_for_again_with_another_value(page: playwright.Page, ther
     button.click()
     expect(page.locator(".facts")).to_contain_text("torque_nm = 120")
     there.over(int(page.url.rpartition("/")[2]))
+
+
+def test_a_run_is_queued_while_it_is_still_being_predicted(page: playwright.Page, there: Served) -> None:
+    page.route("**/api/v1/forecasts", lambda _: None)  # never answered
+    to(page, there, "plans/short")
+    expect(page.get_by_text("Predicting duration and peaks")).to_be_visible()
+    page.get_by_role("button", name="Queue the run").click()
+    expect(page).to_have_url(re.compile(r"/runs/\d+$"))
+    there.over(int(page.url.rpartition("/")[2]))
+
+
+def test_a_narrow_page_has_all_lists_behind_a_button_and_long_notes_are_folded(
+    page: playwright.Page, there: Served
+) -> None:
+    there.post("/runs/1/notes", {"text": "\n".join(f"line {number} of many" for number in range(40))})
+    page.set_viewport_size({"width": 390, "height": 900})
+    to(page, there, "runs/1")
+    note = page.get_by_role("article", name=re.compile("Note of")).locator(".written")
+    expect(note).to_be_visible()
+    folded = note.bounding_box()
+    page.get_by_role("button", name="Show all of it").click()
+    shown = note.bounding_box()
+    assert folded is not None
+    assert shown is not None
+    assert 4 * folded["height"] < shown["height"]
+    settings = page.get_by_role("link", name="Settings")
+    expect(settings).to_be_hidden()
+    page.get_by_role("button", name="Pages: Runs").click()
+    refuse_hard_to_use(page)
+    page.set_viewport_size({"width": 390, "height": 900})
+    settings.click()
+    expect(heading(page, "Settings")).to_be_visible()
+    expect(page.get_by_role("button", name="Pages: Settings")).to_have_attribute("aria-expanded", "false")
 
 
 def test_who_has_no_token_can_stop_and_see_nothing(tmp_path: Path, page: playwright.Page) -> None:

@@ -29,6 +29,7 @@ ADDRESSES = (
     "models",
     "models/three_inertia?write=on",
     "controllers",
+    "controllers?write=new",
     "bench-files",
     "bench-files?write=new",
     "recordings",
@@ -38,6 +39,7 @@ ADDRESSES = (
     "campaigns",
     "audit",
     "settings",
+    "glossary",
     "nothing",
 )
 
@@ -93,10 +95,15 @@ def test_numbers_and_moments_are_those_of_the_language_and_iso_where_the_pointer
 
 
 @IN_GERMAN
-def test_words_of_the_service_are_read_out_as_english(page: playwright.Page, there: Served) -> None:
+def test_words_of_the_service_are_translated_where_known_and_read_out_as_english_elsewhere(
+    page: playwright.Page, there: Served
+) -> None:
     to(page, there, "runs/1")
-    words = page.get_by_role("region", name="Abschnitte und Ereignisse", exact=True).locator("[lang=en]")
-    expect(words.filter(has_text="confirmed by").first).to_be_visible()
+    events = page.get_by_role("region", name="Abschnitte und Ereignisse", exact=True)
+    expect(events.locator("[lang=en]").filter(has_text="phase").first).to_be_visible()
+    expect(events.get_by_text("bestätigt durch RMCU und Dynamometer")).to_be_visible()
+    expect(events.get_by_text("Vorprüfung")).to_be_visible()
+    expect(events.locator("[lang=en]").filter(has_text="confirmed by")).to_have_count(0)
 
 
 @IN_GERMAN

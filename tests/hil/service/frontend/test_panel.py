@@ -94,6 +94,12 @@ def test_the_wall_follows_a_bench_and_takes_no_input(page: playwright.Page, ther
     expect(card).to_contain_text("by local")
     assert page.locator("button, input, select").count() == 0
     assert page.locator("html").get_attribute("data-theme") == "dark"
+    size_of = "one => parseFloat(getComputedStyle(one).fontSize)"
+    word, *others = (
+        card.locator(part).first.evaluate(size_of) for part in (".state", "h2", ".plan", "progress + p")
+    )
+    assert word > 150  # of 900 px in height
+    assert word >= 3 * max(others)
     refuse_hard_to_use(page)
     there.post(f"/runs/{run}/answer", {"text": ""})
     there.over(run)

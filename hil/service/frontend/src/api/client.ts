@@ -2,6 +2,7 @@
 
 import { t } from "../i18n/text.ts";
 import { noteDate } from "./clock.ts";
+import { noteAnswer, noteSilence } from "./reached.ts";
 import type { Health, Problem } from "./types.ts";
 
 export const API = "/api/v1";
@@ -37,8 +38,10 @@ async function fetched(method: string, path: string, body: Body, signal?: AbortS
     answer = await fetch(`${API}${path}`, options);
   } catch (error) {
     if (signal?.aborted) throw error;
+    noteSilence();
     throw new Refused(0, { what: t("the service does not answer"), where: "", fix: "" });
   }
+  noteAnswer();
   noteDate(answer.headers.get("date"));
   const text = await answer.text();
   if (answer.ok) return text;

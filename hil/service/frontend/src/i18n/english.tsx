@@ -1,7 +1,11 @@
-// What the service says in its own words, which are English: read out as such in any language.
+// What the service says in its own words: in the reader's language where it is known, else read out as the English it is.
 
 import type { ComponentChildren, JSX } from "preact";
 import { LANGUAGE } from "./language.ts";
+import { translated } from "./phrases.ts";
 
-export const English = ({ children }: { children: ComponentChildren }): JSX.Element =>
-  LANGUAGE === "en" ? <>{children}</> : <span lang="en">{children}</span>;
+export function English({ children }: { children: ComponentChildren }): JSX.Element {
+  if (LANGUAGE === "en") return <>{children}</>;
+  const known = typeof children === "string" ? translated(children) : null;
+  return known === null ? <span lang="en">{children}</span> : <>{known}</>;
+}

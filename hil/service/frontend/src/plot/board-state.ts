@@ -1,6 +1,6 @@
 // What a board of plots shows: kept in the address, so that it can be sent, and by the service per person and plan.
 
-import { useCallback, useEffect, useMemo, useState } from "preact/hooks";
+import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { ask, get } from "../api/client.ts";
 import type { Layout } from "../api/types.ts";
 import { setQuery, useQuery } from "../router.ts";
@@ -19,6 +19,7 @@ export interface BoardState {
 }
 
 export const FOLLOW_S = 30;
+const REST_MS = 150; // browsers take an address that changes in every frame for a mistake, and stop taking it
 
 export function useBoardState(plan: string, channels: readonly string[], live: boolean): BoardState {
   const [query] = useQuery();
@@ -28,23 +29,36 @@ export function useBoardState(plan: string, channels: readonly string[], live: b
   const known = channels.join(",");
   const plots = useMemo(() => (text ? layoutOf(text).map((plot) => ({ ...plot, channels: plot.channels.filter((one) => channels.includes(one)) })) : usualLayout(channels)), [text, known]);
   const time = query.get("t"), marks = query.get("c");
-  const shown = useMemo(() => rangeFrom(time) ?? (live ? { follow: FOLLOW_S } : "whole" as const), [time, live]);
+  const [moving, setMoving] = useState<Shown | null>(null); // of a live board, while it moves
+  const resting = useRef(0);
+  const inAddress = useMemo(() => rangeFrom(time) ?? (live ? { follow: FOLLOW_S } : "whole" as const), [time, live]);
   const cursors = useMemo(() => numbersFrom(marks), [marks]);
   const put = useCallback((name: string, value: string | null) => {
     const changed = new URLSearchParams(location.search);
     if (value) changed.set(name, value); else changed.delete(name);
     setQuery(changed);
   }, []);
+  useEffect(() => () => clearTimeout(resting.current), []);
+  const rest = (changed: Shown) => {
+    clearTimeout(resting.current);
+    resting.current = window.setTimeout(() => {
+      put("t", changed === "whole" && !live ? null : rangeText(changed));
+      setMoving(null);
+    }, typeof changed === "object" && "from" in changed ? REST_MS : 0);
+  };
   return {
     plots,
-    shown,
+    shown: moving ?? inAddress,
     cursors,
     chosen: Math.min(chosen, Math.max(0, cursors.length - 1)),
     setPlots: (changed) => {
       keep(layoutText(changed));
       put("plots", layoutText(changed));
     },
-    setShown: (changed) => put("t", changed === "whole" && !live ? null : rangeText(changed)),
+    setShown: (changed) => {
+      if (live) setMoving(changed); // what follows is held at once
+      rest(changed);
+    },
     setCursors: (changed, which) => {
       if (which !== undefined) setChosen(which);
       put("c", numbersText(changed));

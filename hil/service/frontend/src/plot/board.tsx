@@ -30,7 +30,10 @@ export function Board({ view, plan, bench }: BoardOptions): JSX.Element {
   const source = useSource({ run: view.run, live: bench === null ? null : live, channels, shown: state.shown, first: view.first_s, last: view.last_s });
   const [hover, setHover] = useState<number | null>(null);
   const board = useRef<HTMLDivElement>(null);
-  const setRange = ({ from, to }: Range) => state.setShown({ from, to });
+  const setRange = ({ from, to }: Range) => {
+    if (bench === null) source.range.value = { from, to }; // plots move at once, everything else when they rest
+    state.setShown({ from, to });
+  };
   const follow = bench !== null && isFollowing(state.shown);
   const addCursor = () => state.setCursors([...state.cursors, hover ?? placeOf(source.range.value, state.cursors.length)].slice(0, 6), state.cursors.length);
   const moveCursor = (which: number, at: number) => state.setCursors(state.cursors.map((one, number) => (number === which ? at : one)), which);

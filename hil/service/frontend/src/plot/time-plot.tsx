@@ -116,9 +116,13 @@ function grabbed(now: Now): NonNullable<NonNullable<uPlot.Cursor["bind"]>["mouse
   };
 }
 
+// A mouse says where it is more often than the screen is drawn.
 function drag(move: (event: MouseEvent) => void): void {
-  const end = () => { removeEventListener("mousemove", move); removeEventListener("mouseup", end); };
-  addEventListener("mousemove", move);
+  let frame = 0, latest: MouseEvent | null = null;
+  const show = () => { frame = 0; if (latest) move(latest); };
+  const take = (event: MouseEvent) => { latest = event; frame ||= requestAnimationFrame(show); };
+  const end = () => { removeEventListener("mousemove", take); removeEventListener("mouseup", end); };
+  addEventListener("mousemove", take);
   addEventListener("mouseup", end);
 }
 

@@ -15,7 +15,7 @@ export const MENU = [
   ["controllers", t("Controllers"), "Controllers"], ["design", t("Design"), "Design"], ["recordings", t("Recordings"), "Recordings"], ["identifications", t("Identify"), "Identify"], ["diagnoses", t("Diagnose"), "Diagnose"], ["tunings", t("Tune"), "Tune"], ["campaigns", t("Campaigns"), "Campaigns"],
   ["audit", t("Audit"), "Audit"], ["settings", t("Settings"), "Settings"],
 ] as const;
-const MORE = [["bench-files", t("Bench files"), "Bench files"]] as const; // beside the menu, which is full
+const MORE = [["bench-files", t("Bench files"), "Bench files"], ["glossary", t("Words of this page"), "Words of this page glossary help"]] as const; // beside the menu, which is full
 
 // Whoever cannot read the page's language finds their own here by its name.
 export const commands = (): Entry[] => [

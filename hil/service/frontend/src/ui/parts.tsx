@@ -1,6 +1,7 @@
 // Small parts that every view is made of.
 
 import type { ComponentChildren, JSX } from "preact";
+import { useState } from "preact/hooks";
 import { moment } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import type { Asked } from "../data.ts";
@@ -54,6 +55,19 @@ export function Loaded<T>({ of, children, what }: { of: Asked<T>; what: string; 
   if (of.data !== null) return <>{children(of.data)}</>;
   if (of.error) return <p class="bad" role="alert"><English>{of.error.message}</English></p>;
   return <p class="quiet">{t("Loading {what} …", { what })}</p>;
+}
+
+const FOLDED_LETTERS = 500, FOLDED_LINES = 8;
+
+// A text of a person: the beginning of a long one, and the rest when somebody asks for it.
+export function Written({ children }: { children: string }): JSX.Element {
+  const isLong = children.length > FOLDED_LETTERS || children.split("\n").length > FOLDED_LINES, [open, setOpen] = useState(false);
+  return (
+    <>
+      <p class={isLong && !open ? "written folded" : "written"}>{children}</p>
+      {isLong ? <button type="button" class="plain" aria-expanded={open} onClick={() => setOpen(!open)}>{open ? t("Show less") : t("Show all of it")}</button> : null}
+    </>
+  );
 }
 
 const SHOWN = /\.(html|pdf|json|xml|txt|yaml|toml|csv|svg|png)$/;

@@ -6,7 +6,7 @@ import { useData } from "../data.ts";
 import { t } from "../i18n/text.ts";
 import { useQuery } from "../router.ts";
 import { useMay } from "../session.ts";
-import { kindInWords } from "../ui/kinds.ts";
+import { actionInWords, kindInWords } from "../ui/kinds.ts";
 import { Heading, Loaded, Moment, Scroll } from "../ui/parts.tsx";
 
 const PAGE = 100;
@@ -25,7 +25,7 @@ export function Audit(): JSX.Element {
           <>
             <Scroll label={t("Audit log")}><table>
               <thead><tr><th scope="col" class="number">{t("entry")}</th><th scope="col">{t("when")}</th><th scope="col">{t("who")}</th><th scope="col">{t("role")}</th><th scope="col">{t("action")}</th><th scope="col">{t("target")}</th><th scope="col">{t("detail")}</th></tr></thead>
-              <tbody>{all.map((one) => <tr key={one.id}><td class="number">{one.id}</td><td><Moment at={one.at} /></td><td>{one.who}</td><td>{kindInWords(one.role)}</td><th scope="row">{one.action}</th><td>{one.target}</td><td>{one.detail}</td></tr>)}</tbody>
+              <tbody>{all.map((one) => <tr key={one.id}><td class="number">{one.id}</td><td><Moment at={one.at} /></td><td>{one.who}</td><td>{kindInWords(one.role)}</td><th scope="row">{actionInWords(one.action)}</th><td>{one.target}</td><td>{one.detail}</td></tr>)}</tbody>
             </table></Scroll>
             <div class="row">
               {before ? <button type="button" onClick={() => setQuery(new URLSearchParams(), true)}>{t("Newest")}</button> : null}

@@ -24,6 +24,14 @@ export function wordOf(bench: Bench, run: Run | null): string {
   return run?.prompt ? t("Question") : isHeld(run) ? t("Held") : STATES.running;
 }
 
+// The largest word on the wall of a control room: one, and short.
+const WALL: Record<Bench["state"], string> = { free: t("Free"), running: t("Running"), ending: t("Ending"), in_use: t("In use"), emergency_stop: t("STOP"), away: t("Away") };
+
+export function wallWordOf(bench: Bench, run: Run | null): string {
+  if (bench.stop_confirmed === false) return WALL.emergency_stop;
+  return bench.state !== "running" ? WALL[bench.state] : run?.prompt ? t("Question") : isHeld(run) ? t("Held") : WALL.running;
+}
+
 // The first that may start as it is; one that waits for somebody where none may.
 export const nextIn = (queue: Run[]): Run | undefined => queue.find((run) => run.state === "queued" && !run.waits_for) ?? queue[0];
 

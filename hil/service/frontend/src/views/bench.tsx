@@ -13,7 +13,7 @@ import { useMay, useMe } from "../session.ts";
 import { benchInSight } from "../shell/stop.tsx";
 import { useStore } from "../store.ts";
 import { Badge, linkTo, Moment, Scroll, Section, verdictOf } from "../ui/parts.tsx";
-import { Banner, LostNotice } from "./bench-banner.tsx";
+import { Banner } from "./bench-banner.tsx";
 import { Criteria } from "./criteria.tsx";
 import { Queue } from "./queue.tsx";
 import { StartPlan } from "./plans/start-plan.tsx";
@@ -32,7 +32,6 @@ export function BenchView({ bench }: { bench: string }): JSX.Element {
   const running = state?.running ?? null;
   return (
     <>
-      <LostNotice />
       {state ? <Banner state={state} level={1} /> : <h1>{t("Bench {bench}", { bench })}</h1>}
       <p class="links"><a href={to.panel(bench)}>{t("Operator panel")}</a> <a href={`${to.list("runs")}?bench=${encodeURIComponent(bench)}`}>{t("All runs of this bench")}</a> <a href={to.wall(bench)}>{t("For the wall of a control room")}</a></p>
       {state && me.tokens ? <p class="quiet">{t("On this page now: {names}", { names: state.viewers.join(", ") })}</p> : null}

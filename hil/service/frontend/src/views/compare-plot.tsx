@@ -4,7 +4,7 @@ import type { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import uPlot from "uplot";
 import { get } from "../api/client.ts";
-import type { RunTraces, RunView } from "../api/types.ts";
+import type { RecordingCurves, RunTraces, RunView } from "../api/types.ts";
 import { figure, wordsOf } from "../format.ts";
 import { t } from "../i18n/text.ts";
 import { axis, HEIGHT, onWidth, roleOf, roomy } from "../plot/frame.ts";
@@ -13,13 +13,13 @@ import { colour, coloured } from "../theme.ts";
 
 export interface Stretch {
   run: number;
+  recording?: number; // a given one in place of a run
   step: number; // on the recording's clock
   from: number; // from the step
   to: number;
 }
 
 interface Laid {
-  run: number;
   time: number[];
   lowest: (number | null)[];
   highest: (number | null)[];
@@ -57,19 +57,34 @@ export function ComparePlot({ channel, unit, stretches }: { channel: string; uni
   return (
     <figure class="plot">
       <figcaption><b>{wordsOf(channel)}</b><span class="quiet">{peaks ? t("largest {peaks} {unit}", { peaks, unit }) : "…"}</span></figcaption>
-      <div class="canvas" ref={place} role="img" aria-label={t("{channel} of runs {runs} from the step; largest {peaks} {unit}", { channel: wordsOf(channel), runs: stretches.map((one) => one.run).join(", "), peaks, unit })} />
+      <div class="canvas" ref={place} role="img" aria-label={t("{channel} of runs {runs} from the step; largest {peaks} {unit}", { channel: wordsOf(channel), runs: stretches.map((one) => (one.recording === undefined ? one.run : t("recording {number}", { number: one.recording }))).join(", "), peaks, unit })} />
     </figure>
   );
 }
 
 const peakOf = ({ lowest, highest }: Laid): number => Math.max(...[...lowest, ...highest].map((one) => (one === null ? 0 : Math.abs(one))));
 
-async function laidOf({ run, step, from, to }: Stretch, channel: string, signal: AbortSignal): Promise<Laid> {
+async function laidOf({ run, recording, step, from, to }: Stretch, channel: string, signal: AbortSignal): Promise<Laid> {
+  if (recording !== undefined) return ofRecording(recording, step, from, to, channel, signal);
   const query = new URLSearchParams({ channel, start_s: (step + from).toFixed(4), end_s: (step + to).toFixed(4), most: "1000" });
   const { time, channels } = tracesOf(await get<RunTraces>(`/runs/${run}/traces?${query}`, signal));
   const { lowest, highest } = channels[channel] ?? { lowest: [], highest: [] };
-  return { run, time: time.map((one) => one - step), lowest, highest };
+  return { time: time.map((one) => one - step), lowest, highest };
 }
+
+// In the middle of its buckets; empty where the recording has no such channel, or nothing there.
+async function ofRecording(recording: number, step: number, from: number, to: number, channel: string, signal: AbortSignal): Promise<Laid> {
+  const query = new URLSearchParams({ channel, start_s: (step + from).toFixed(4), end_s: (step + to).toFixed(4), most: "1000" });
+  try {
+    const { start_s: start, width_s: width, curves: [found] } = await get<RecordingCurves>(`/recordings/${recording}/curves?${query}`, signal);
+    return found ? { time: found.lowest.map((_, bucket) => start + (bucket + 0.5) * width - step), lowest: found.lowest, highest: found.highest } : EMPTY;
+  } catch (error) {
+    if (signal.aborted) throw error;
+    return EMPTY;
+  }
+}
+
+const EMPTY: Laid = { time: [], lowest: [], highest: [] };
 
 // The first run is drawn wider, so that one that lies exactly over it shows at its edges.
 function make(element: HTMLElement, count: number, unit: string): uPlot {

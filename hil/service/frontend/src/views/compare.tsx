@@ -6,13 +6,17 @@ import { get } from "../api/client.ts";
 import type { Comparison, FoundRuns, Run, RunView } from "../api/types.ts";
 import { to } from "../addresses.ts";
 import { useData } from "../data.ts";
-import { figure, moment, percent } from "../format.ts";
+import { moment } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { t, tx } from "../i18n/text.ts";
 import { roleOf } from "../plot/frame.ts";
 import { useQuery } from "../router.ts";
 import { kindInWords } from "../ui/kinds.ts";
-import { Badge, linkTo, Heading, Scroll, Section } from "../ui/parts.tsx";
+import { linkTo, Heading, Scroll, Section } from "../ui/parts.tsx";
+import { recordingsFrom, type Beside } from "./compare-beside.ts";
+import { ChooseRecordings } from "./compare-recordings.tsx";
+import { changeOf, type Change } from "./compare-changes.ts";
+import { ComparedCriteria } from "./compare-criteria.tsx";
 import { ComparePlot, stretchOf } from "./compare-plot.tsx";
 
 const CHANNELS = ["shaft_torque_nm", "motor_speed_rad_s", "motor_torque_nm"];
@@ -26,11 +30,18 @@ export function Compare(): JSX.Element {
     next.set("runs", changed.join(","));
     setQuery(next, true);
   };
+  const beside = recordingsFrom(query.get("recordings"));
+  const setBeside = (text: string) => {
+    const next = new URLSearchParams(query);
+    if (text) next.set("recordings", text); else next.delete("recordings");
+    setQuery(next, true);
+  };
   return (
     <>
       <Heading>{t("Compare runs")}</Heading>
       <Choose runs={runs} onChange={set} />
-      {runs.length >= 2 ? <Compared key={runs.join()} runs={runs} query={query} setQuery={setQuery} /> : <p class="quiet">{tx("Choose two runs or more of one plan; in the <a>table of runs</a> they can be ticked.", { a: linkTo(to.list("runs")) })}</p>}
+      {runs.length ? <ChooseRecordings chosen={beside} runs={runs.length} onChange={setBeside} /> : null}
+      {runs.length >= 2 || (runs.length && beside.length) ? <Compared key={runs.join()} runs={runs} beside={beside} query={query} setQuery={setQuery} /> : <p class="quiet">{tx("Choose two runs or more of one plan; in the <a>table of runs</a> they can be ticked.", { a: linkTo(to.list("runs")) })}</p>}
     </>
   );
 }
@@ -49,7 +60,7 @@ function Choose({ runs, onChange }: { runs: number[]; onChange: (runs: number[])
         </span>
       ))}
       {runs.length < MOST ? (
-        <label>{runs.length ? t("and") : t("Run")}{" "}
+        <label>{runs.length ? t("and") : t("A run")}{" "}
           <select value="" onChange={(event) => onChange([...runs, Number(event.currentTarget.value)])}>
             <option value="" disabled>{t("choose …")}</option>
             {offered.map((run) => <option key={run.id} value={run.id}>{named(run)}</option>)}
@@ -100,7 +111,7 @@ function segmentsOf(views: RunView[]): Common[] {
   return names.filter((name) => views.every((view) => stretchOf(view, name, false) !== null)).map((id) => ({ id, channels }));
 }
 
-function Compared({ runs, query, setQuery }: { runs: number[]; query: URLSearchParams; setQuery: (query: URLSearchParams) => void }): JSX.Element {
+function Compared({ runs, beside, query, setQuery }: { runs: number[]; beside: Beside[]; query: URLSearchParams; setQuery: (query: URLSearchParams) => void }): JSX.Element {
   const { views, pairs, error } = useFound(runs);
   if (error) return <p class="bad" role="alert"><English>{error}</English></p>;
   if (!views) return <p class="quiet">{t("Loading the runs …")}</p>;
@@ -113,11 +124,12 @@ function Compared({ runs, query, setQuery }: { runs: number[]; query: URLSearchP
     setQuery(next);
   };
   const channels = (query.get("channels")?.split(",") ?? CHANNELS).filter((one) => segment?.channels.includes(one));
-  const stretches = segment ? views.map((view) => stretchOf(view, segment.id, near)).filter((one) => one !== null) : [];
+  const ofRuns = segment ? views.map((view) => stretchOf(view, segment.id, near)).filter((one) => one !== null) : [];
+  const stretches = [...ofRuns, ...beside.map(({ id, step }) => ({ recording: id, run: 0, step, from: ofRuns[0]?.from ?? 0, to: ofRuns[0]?.to ?? 0 }))];
   return (
     <>
       {pairs ? pairs.map((pair) => <Lead key={pair.other.id} pair={pair} />) : <p class="quiet">{t("Comparing criteria and inputs …")}</p>}
-      {pairs ? <Differences pairs={pairs} /> : null}
+      {pairs?.length ? <Differences pairs={pairs} /> : null}
       {segment ? (
         <Section title={t("Traces from the step")} label="traces">
           <div class="row small">
@@ -129,16 +141,18 @@ function Compared({ runs, query, setQuery }: { runs: number[]; query: URLSearchP
           <div class="plots part">{channels.map((channel) => <ComparePlot key={channel} channel={channel} unit={views[0]?.channels[channel] ?? ""} stretches={stretches} />)}</div>
         </Section>
       ) : null}
-      {pairs ? <ComparedCriteria pairs={pairs} /> : null}
+      {pairs?.length ? <ComparedCriteria pairs={pairs} /> : null}
     </>
   );
 }
 
 function Lead({ pair }: { pair: Comparison }): JSX.Element {
-  const { first, other, distance, notes } = pair;
+  const { first, other, criteria, notes } = pair, changes = criteria.map(changeOf).filter((one) => one !== null);
+  const count = (kind: Change["kind"]): number => changes.filter((one) => one.kind === kind).length;
   return (
     <>
-      <p>{distance === null ? t("No criterion has a value in both runs {first} and {other}.", { first: first.id, other: other.id }) : t("Mean difference of the criteria of run {other} from run {first}: {share}.", { other: other.id, first: first.id, share: percent(distance, 1) })}</p>
+      <p>{changes.length === 0 ? t("No criterion has a value in both runs {first} and {other}.", { first: first.id, other: other.id })
+        : t("Criteria of run {other} against run {first}: {better} better, {worse} worse, {same} the same, {open} without a direction.", { other: other.id, first: first.id, better: count("better"), worse: count("worse"), same: count("same"), open: count("open") })}</p>
       {notes.map((note) => <p class="quiet" key={note}><English>{note}</English></p>)}
     </>
   );
@@ -164,30 +178,6 @@ function Differences({ pairs }: { pairs: Comparison[] }): JSX.Element {
           </table>
         </Scroll>
       )}
-    </Section>
-  );
-}
-
-function ComparedCriteria({ pairs }: { pairs: Comparison[] }): JSX.Element {
-  const rows = pairs[0]?.criteria ?? [], first = pairs[0]?.first.id ?? 0;
-  return (
-    <Section title={t("Criteria")} label="criteria">
-      <Scroll label={t("Criteria of the runs")}>
-        <table>
-          <thead><tr><th scope="col">{t("criterion")}</th><th scope="col" class="number">{t("limit")}</th><th scope="col" class="number">{t("run {run}", { run: first })}</th>{pairs.map((pair) => <th key={pair.other.id} scope="col" class="number">{t("run {run}", { run: pair.other.id })}</th>)}</tr></thead>
-          <tbody>
-            {rows.map((row) => (
-              <tr key={row.id}><th scope="row">{row.title || row.id}{row.title ? <span class="reason">{row.id}</span> : null}</th><td class="number">{row.limit || "–"}</td>
-                <td class="number">{figure(row.values[0], row.unit)} <Badge kind={row.verdicts[0]} /></td>
-                {pairs.map((pair) => {
-                  const one = pair.criteria.find((other) => other.id === row.id);
-                  return <td key={pair.other.id} class="number">{figure(one?.values[1], row.unit)} {one ? <Badge kind={one.verdicts[1]} /> : null}<span class="reason">{one?.relative == null ? "" : `${one.relative > 0 ? "+" : ""}${percent(one.relative, 1)}`}</span></td>;
-                })}
-              </tr>
-            ))}
-          </tbody>
-        </table>
-      </Scroll>
     </Section>
   );
 }

@@ -10,7 +10,7 @@ import { useLive, type BenchState, type Live } from "../live.ts";
 import { benchInSight } from "../shell/stop.tsx";
 import { useStore } from "../store.ts";
 import { play, soundOf, soundOn, turnSound } from "../ui/sound.ts";
-import { Actions, LostNotice } from "./bench-banner.tsx";
+import { Actions } from "./bench-banner.tsx";
 import { aboutBench, leftOf, nextOf, titleOf, wordOf } from "./bench-words.ts";
 import { PromptCard, useNow } from "./panel-prompt.tsx";
 import { NewestHandover } from "./team/handovers.tsx";
@@ -25,7 +25,6 @@ export function Panel({ bench }: { bench: string }): JSX.Element {
   useSounds(state);
   return (
     <div class="panel">
-      <LostNotice />
       {state ? <State state={state} /> : <h1>{t("Bench {bench}", { bench })}</h1>}
       <Dials live={live} state={state} />
       {state?.running ? <Decided live={live} run={state.running.id} /> : null}

@@ -12,6 +12,7 @@ import { Campaigns } from "./campaigns/campaigns.tsx";
 import { Compare } from "./compare.tsx";
 import { Design } from "./design/design.tsx";
 import { BenchFiles, BenchFileView, Controllers, ControllerView, Models, ModelView } from "./given/given.tsx";
+import { Glossary } from "./glossary.tsx";
 import { Panel } from "./panel.tsx";
 import { Plans, PlanView } from "./plans/plans.tsx";
 import { Recordings, RecordingView } from "./recordings/recordings.tsx";
@@ -56,6 +57,7 @@ export function View({ place }: { place: Place }): JSX.Element {
     case "campaign": return <CampaignView key={place.id} id={place.id} />;
     case "audit": return <Audit />;
     case "settings": return <Settings />;
+    case "glossary": return <Glossary />;
     case "missing": return <Missing path={place.path} />;
   }
 }

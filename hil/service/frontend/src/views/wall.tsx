@@ -8,20 +8,20 @@ import { English } from "../i18n/english.tsx";
 import { t } from "../i18n/text.ts";
 import { showAs } from "../theme.ts";
 import { Badge, verdictOf } from "../ui/parts.tsx";
-import { holderOf, leftOf, nextIn, titleOf, wordOf } from "./bench-words.ts";
+import { headlineOf, holderOf, leftOf, nextIn, titleOf, wallWordOf } from "./bench-words.ts";
 import { useNow } from "./panel-prompt.tsx";
 import { useWall, type Shown } from "./wall-data.ts";
 
 const OLD_S = 10;
-const VERDICTS = { all: 4, one: 6 };
+const VERDICTS = { all: 2, one: 4 };
 
 export function Wall({ bench }: { bench: string | null }): JSX.Element {
   const { shown, missing, atMs } = useWall(bench), now = useNow(), began = useBegan();
   useEffect(() => showAs("dark"), []);
   const ageS = Math.round((performance.now() - (atMs || began)) / 1000), old = ageS > OLD_S;
-  const columns = Math.ceil(Math.sqrt(Math.max(1, shown.length)));
+  const columns = Math.ceil(Math.sqrt(Math.max(1, shown.length))), rows = Math.max(1, Math.ceil(shown.length / columns));
   return (
-    <div class={old ? "wall old" : "wall"} style={{ "--columns": columns }}>
+    <div class={old ? "wall old" : "wall"} style={{ "--columns": columns, "--rows": rows }}>
       <header>
         <h1>{bench === null ? t("All benches") : t("Bench {bench}", { bench })}</h1>
         <p class="clock">{clockTime(now)}</p>
@@ -42,7 +42,8 @@ function Card({ of: { bench, running, queue, latest }, nowMs, alone }: { of: Sho
   return (
     <li class={`bench ${running?.prompt ? "in_use" : bench.state}`}>
       <h2><a href={to.wall(bench.name)}>{bench.name}</a> {bench.title ? <small>{bench.title}</small> : null}</h2>
-      <p class="state">{wordOf(bench, running)}</p>
+      <p class="state">{wallWordOf(bench, running)}</p>
+      {bench.stop_confirmed === false ? <p class="bad">{headlineOf(bench, null)}</p> : null}
       {has ? <p>{running ? t("by {person}", { person: has }) : t("reserved by {person}", { person: has })}</p> : null}
       {running ? (
         <>
@@ -50,7 +51,7 @@ function Card({ of: { bench, running, queue, latest }, nowMs, alone }: { of: Sho
           <progress max={1} value={running.share ?? 0} aria-label={t("Progress of run {run}", { run: running.id })} />
           <p>{left === null ? <English>{running.doing}</English> : t("about {time} left", { time: roughly(left) })}</p>
         </>
-      ) : bench.why ? <p><English>{bench.why}</English></p> : null}
+      ) : bench.why ? <p class="why"><English>{bench.why}</English></p> : null}
       {next ? <p class="quiet">{queue.length > 1 ? t("Next: {plan}, by {person}, and {count} more", { plan: titleOf(next), person: next.requested_by, count: queue.length - 1 }) : t("Next: {plan}, by {person}", { plan: titleOf(next), person: next.requested_by })}</p> : null}
       <ol aria-label={t("Last verdicts")}>
         {latest.slice(0, alone ? VERDICTS.one : VERDICTS.all).map((run) => (

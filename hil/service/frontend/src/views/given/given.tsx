@@ -70,13 +70,13 @@ export function BenchFiles(): JSX.Element {
 // A list with what engineers may add to it.
 function List({ kind, title, also, children }: { kind: GivenKind; title: string; also: JSX.Element; children: ComponentChildren }): JSX.Element {
   const of = kindOf(kind), may = useMay(), { isNew } = useWritten();
-  if (isNew && of.start && may("engineer")) return <><Heading kind={<a href={to.list(of.list)}>{title}</a>}>{of.write}</Heading><FileEditor kind={kind} text={of.start} /></>;
+  if (isNew && may("engineer")) return <><Heading kind={<a href={to.list(of.list)}>{title}</a>}>{of.write}</Heading><FileEditor kind={kind} text={of.start} /></>;
   const give = { model: t("Give a model"), controller: t("Give a controller"), bench: t("Give a bench file") }[kind];
   return (
     <>
       <Heading>{title}</Heading>
       {children}
-      {may("engineer") ? <p class="links">{of.start ? <a href={`${to.list(of.list)}?write=new`}>{of.write}</a> : null} {also}</p> : null}
+      {may("engineer") ? <p class="links"><a href={`${to.list(of.list)}?write=new`}>{of.write}</a> {also}</p> : null}
       {may("engineer") ? <Section title={give} label="give"><GiveFile submit={give} path={of.path} ending=".toml" onGiven={(name) => go(of.address(name))} /></Section> : null}
     </>
   );

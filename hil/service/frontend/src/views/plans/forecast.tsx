@@ -2,7 +2,7 @@
 
 import type { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
-import { post, Refused } from "../../api/client.ts";
+import { ask, Refused } from "../../api/client.ts";
 import type { Forecast } from "../../api/types.ts";
 import { figure, percent } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
@@ -22,10 +22,10 @@ interface Wanted {
 interface Foreseen {
   forecast: Forecast | null;
   error: string;
-  may: boolean;
+  refused: boolean; // the service would not queue it either, or it exceeds the bench
 }
 
-const NOTHING: Foreseen = { forecast: null, error: "", may: false };
+const NOTHING: Foreseen = { forecast: null, error: "", refused: false };
 
 export function useForecast(wanted: Wanted | null, form?: { current: HTMLFormElement | null }): Foreseen {
   const [found, setFound] = useState(NOTHING);
@@ -33,24 +33,26 @@ export function useForecast(wanted: Wanted | null, form?: { current: HTMLFormEle
   useEffect(() => {
     setFound(NOTHING);
     if (!wanted) return undefined;
-    let current = true;
+    const control = new AbortController();
     const predict = async () => {
       try {
         if (form && !form.current?.checkValidity()) throw new Error(t("A variable is beyond its bounds."));
-        const forecast = await post<Forecast>("/forecasts", wanted);
-        if (current) setFound({ forecast, error: "", may: forecast.fits });
+        const forecast = await ask<Forecast>("POST", "/forecasts", wanted, control.signal);
+        setFound({ forecast, error: "", refused: !forecast.fits });
       } catch (error) {
+        if (control.signal.aborted) return;
         const { message } = error as Error, fix = error instanceof Refused ? error.fix : "";
         // what cannot be predicted may still be run
-        if (current) setFound({ forecast: null, error: fix ? `${message} (${fix})` : message, may: error instanceof Refused && error.status === 503 });
+        setFound({ forecast: null, error: fix ? `${message} (${fix})` : message, refused: !(error instanceof Refused && (error.status === 503 || error.status === 0)) });
       }
     };
     const timer = setTimeout(() => void predict(), WAIT_MS);
-    return () => { current = false; clearTimeout(timer); };
+    return () => { control.abort(); clearTimeout(timer); };
   }, [key]);
   return found;
 }
 
+// Nobody has to wait for it: a run is queued while it is computed, and a run that exceeds its bench is refused there.
 // With criteria it says what each is predicted to be, else how many fail.
 export function ForecastShown({ of: { forecast, error }, criteria = false }: { of: Foreseen; criteria?: boolean }): JSX.Element {
   if (error) return <p class="bad"><English>{error}</English></p>;

@@ -9,6 +9,7 @@ import { attempt, useData } from "../../data.ts";
 import { t } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { ForecastShown, useForecast } from "./forecast.tsx";
+import { valuesOf, VariableFields } from "./variable-fields.tsx";
 
 // Of an earlier run: its bench, and values of its variables as texts.
 export interface StartedFrom {
@@ -26,8 +27,7 @@ export function StartPlan({ bench, plan, from }: { bench?: string; plan?: string
   const form = useRef<HTMLFormElement>(null);
   const found = plans.find((one) => one.name === (chosenPlan || plans[0]?.name));
   const where = chosenBench || benches[0]?.name || "";
-  const values = Object.fromEntries(Object.entries(found?.variables ?? {}).map(([name, { default: usual }]) => [name, Number(texts[name] ?? usual)]));
-  const wanted = found && where ? { plan: found.name, bench: where, values } : null;
+  const wanted = found && where ? { plan: found.name, bench: where, values: valuesOf(found, texts) } : null;
   const forecast = useForecast(wanted, form);
   const start = async (event: Event) => {
     event.preventDefault();
@@ -52,14 +52,9 @@ export function StartPlan({ bench, plan, from }: { bench?: string; plan?: string
         </label>
       )}
       {plan || !found ? null : <p class="quiet"><a href={to.plan(found.name)}>{found.name}</a>{found.description ? `: ${found.description}` : ""}</p>}
-      {Object.entries(found?.variables ?? {}).map(([name, variable]) => (
-        <label class="field" key={`${found?.name} ${name}`}>{variable.unit ? t("{name} in {unit}", { name: variable.description || name, unit: variable.unit }) : variable.description || name}
-          <input type="number" step="any" required name={name} value={texts[name] ?? String(variable.default)} min={variable.lower ?? undefined} max={variable.upper ?? undefined}
-            onInput={(event) => setTexts({ ...texts, [name]: event.currentTarget.value })} />
-        </label>
-      ))}
+      {found ? <VariableFields plan={found} texts={texts} onChange={setTexts} /> : null}
       <div class="forecast" aria-live="polite"><ForecastShown of={forecast} /></div>
-      <button type="submit" class="main" disabled={!forecast.may}>{t("Queue the run")}</button>
+      <button type="submit" class="main" disabled={!wanted || forecast.refused}>{t("Queue the run")}</button>
     </form>
   );
 }

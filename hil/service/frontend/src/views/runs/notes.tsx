@@ -8,7 +8,7 @@ import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
 import { t } from "../../i18n/text.ts";
 import { useMay, useMe } from "../../session.ts";
-import { Moment, Section } from "../../ui/parts.tsx";
+import { Moment, Section, Written } from "../../ui/parts.tsx";
 
 const AGAIN_MS = 5000;
 const TAG = "[A-Za-z0-9][A-Za-z0-9_.:\\-]{0,39}";
@@ -56,7 +56,7 @@ function NoteShown({ note, onRemove }: { note: Note; onRemove: () => void }): JS
       <p class="quiet">{note.who}, <Moment at={note.at} />
         {may("engineer") || (may("operator") && note.who === me.name) ? <button type="button" class="plain" onClick={() => { if (confirm(t("Remove this note?"))) onRemove(); }}>{t("Remove")}</button> : null}
       </p>
-      <p class="written">{note.text}</p>
+      <Written>{note.text}</Written>
     </article>
   );
 }

@@ -14,7 +14,9 @@ const STATES = ["waiting_approval", "queued", "running", "ended", "interrupted",
 const WAIT_MS = 300;
 
 export function RunFilters({ query, onChange }: { query: RunsQuery; onChange: (query: RunsQuery) => void }): JSX.Element {
-  const choices = useData<RunChoices>(`/run-list/choices${query.filters.plan ? `?plan=${encodeURIComponent(query.filters.plan)}` : ""}`).data;
+  const found = useData<RunChoices>(`/run-list/choices${query.filters.plan ? `?plan=${encodeURIComponent(query.filters.plan)}` : ""}`).data;
+  const [choices, setChoices] = useState<RunChoices | null>(null); // stay while those of another plan are asked for
+  useEffect(() => { if (found) setChoices(found); }, [found]);
   const offered: Record<Filter, string[]> = {
     plan: choices?.plans ?? [], bench: choices?.benches ?? [], dut: choices?.duts ?? [], requested_by: choices?.people ?? [], verdict: VERDICTS, state: STATES, tag: choices?.tags ?? [],
   };

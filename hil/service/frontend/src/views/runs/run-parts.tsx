@@ -6,10 +6,9 @@ import type { Run, RunView } from "../../api/types.ts";
 import { fixed, joined } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
 import { t, tn, tx } from "../../i18n/text.ts";
-import { rangeText } from "../../plot/range.ts";
-import { setQuery } from "../../router.ts";
-import { kindInWords } from "../../ui/kinds.ts";
+import { eventInWords, kindInWords } from "../../ui/kinds.ts";
 import { FileLink, Scroll, Section } from "../../ui/parts.tsx";
+import { look } from "./places.ts";
 
 const NAMES: Record<string, string> = {
   "report.html": t("report"), "report.pdf": t("report as PDF"), "recording.mcap": t("recording (MCAP)"), "result.json": t("result (JSON)"), "junit.xml": "JUnit", "plan.yaml": t("plan as executed"), "log.txt": t("log"),
@@ -18,12 +17,6 @@ const AROUND_S = 2;
 
 export function Happenings({ view }: { view: RunView }): JSX.Element | null {
   if (!view.marks.length) return null;
-  const look = (from: number, until: number) => {
-    const query = new URLSearchParams(location.search);
-    query.set("t", rangeText({ from, to: until }));
-    setQuery(query);
-    document.getElementById("section-plots")?.scrollIntoView();
-  };
   const marks = [...view.marks].sort((one, other) => one.start_s - other.start_s);
   return (
     <Section title={t("Segments and events")} label="events">
@@ -33,8 +26,8 @@ export function Happenings({ view }: { view: RunView }): JSX.Element | null {
           <tbody>
             {marks.map((mark, at) => (
               <tr key={at}>
-                <td class="number"><button type="button" class="plain" aria-label={t("Show {mark} at {start_s} s", { mark: mark.name, start_s: fixed(mark.start_s, 2) })} onClick={() => (mark.end_s != null ? look(mark.start_s, mark.end_s) : look(mark.start_s - AROUND_S, mark.start_s + AROUND_S))}>{joined(fixed(mark.start_s, 2), "s")}</button></td>
-                <td>{kindInWords(mark.kind)}</td><td>{mark.name}</td><td><English>{mark.text}</English></td>
+                <td class="number"><button type="button" class="plain" aria-label={t("Show {mark} at {start_s} s", { mark: mark.name, start_s: fixed(mark.start_s, 2) })} onClick={() => look(mark.end_s != null ? { from: mark.start_s, to: mark.end_s } : { from: mark.start_s - AROUND_S, to: mark.start_s + AROUND_S })}>{joined(fixed(mark.start_s, 2), "s")}</button></td>
+                <td>{kindInWords(mark.kind)}</td><td>{mark.kind === "segment" ? mark.name : eventInWords(mark.name)}</td><td><English>{mark.text}</English></td>
               </tr>
             ))}
           </tbody>

@@ -11,45 +11,49 @@ import { English } from "../../i18n/english.tsx";
 import { t, tx } from "../../i18n/text.ts";
 import { useLive } from "../../live.ts";
 import { Board } from "../../plot/board.tsx";
-import { rangeText } from "../../plot/range.ts";
-import { go, setQuery } from "../../router.ts";
+import { go } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { benchInSight } from "../../shell/stop.tsx";
 import { useStore } from "../../store.ts";
 import { Badge, Facts, Heading, Loaded, Moment, Section, verdictOf } from "../../ui/parts.tsx";
-import { Banner, LostNotice } from "../bench-banner.tsx";
+import { Banner } from "../bench-banner.tsx";
 import { againWith } from "../plans/start-values.ts";
 import { Criteria } from "../criteria.tsx";
 import { Notes } from "./notes.tsx";
+import { isPassed, Outcome } from "./outcome.tsx";
+import { look, rangeOfSegment } from "./places.ts";
+import { WhyItWaits } from "./waiting.tsx";
 import { Downloads, Evidence, Happenings } from "./run-parts.tsx";
 
 const OVER = ["ended", "interrupted", "cancelled"];
-const WAITING_MS = 2000;
+const WAITING = ["queued", "waiting_approval"];
+const AGAIN_MS = 2000;
 
 export function RunView({ run: id }: { run: number }): JSX.Element {
-  const run = useData<Run>(`/runs/${id}`, WAITING_MS);
+  const run = useData<Run>(`/runs/${id}`, AGAIN_MS);
   return <Loaded of={run} what={t("run {run}", { run: id })}>{(found) => <Found key={found.state} run={found} />}</Loaded>;
 }
 
 function Found({ run }: { run: Run }): JSX.Element {
   const isLive = run.state === "running", isOver = OVER.includes(run.state);
   const recorded = isOver && (run.files ?? []).includes("recording.mcap");
-  const view = useData<View>(isLive || recorded ? `/runs/${run.id}/view` : null, isLive ? WAITING_MS : 0);
+  const view = useData<View>(isLive || recorded ? `/runs/${run.id}/view` : null, isLive ? AGAIN_MS : 0);
   const live = useLive(isLive ? run.bench : null);
   const state = useStore(live.state), decided = useStore(live.criteria);
   useEffect(() => { benchInSight.value = isOver ? "" : run.bench; }, [isOver, run.bench]);
   const criteria = isLive ? (decided?.run === run.id ? decided.criteria : []) : view.data?.criteria ?? [];
   return (
     <>
-      <LostNotice />
       <Heading kind={tx("Run {run} on {bench}", { run: run.id, bench: <a href={to.bench(run.bench)}>{run.bench}</a> })}>{run.title || run.plan} <Badge kind={verdictOf(run)} /></Heading>
       {isLive && state?.running?.id === run.id ? <Banner state={state} /> : null}
+      {WAITING.includes(run.state) ? <WhyItWaits run={run} /> : null}
+      {isOver ? <Outcome run={run} view={view.data} /> : null}
       <RunFacts run={run} />
       <RunActions run={run} />
       {view.data ? (
         <Section title={t("Plots")} label="plots"><Board view={view.data} plan={run.plan} bench={isLive ? run.bench : null} /></Section>
       ) : isLive ? <p class="quiet">{t("Nothing has been measured yet.")}</p> : recorded ? <Loaded of={view} what={t("the recording")}>{() => null}</Loaded> : null}
-      {isLive || criteria.length ? <Section title={t("Criteria")} label="criteria"><Criteria of={criteria} onSegment={(segment) => view.data && showSegment(view.data, segment)} /></Section> : null}
+      {isLive || criteria.length ? <Section title={t("Criteria")} label="criteria"><Criteria of={criteria} onSegment={(segment) => { const range = view.data && rangeOfSegment(view.data, segment); if (range) look(range); }} /></Section> : null}
       {view.data ? <Happenings view={view.data} /> : null}
       <Notes run={run.id} />
       {isOver ? <Downloads run={run} /> : null}
@@ -73,7 +77,7 @@ function RunFacts({ run }: { run: Run }): JSX.Element {
         run.started_at ? [t("began"), <Moment at={run.started_at} />] : null,
         run.ended_at ? [t("ended"), <Moment at={run.ended_at} />] : null,
         run.safe_state ? [t("safe state"), <span class={run.safe_state === "not_confirmed" ? "bad" : ""}>{safe[run.safe_state]}</span>] : null,
-        run.reason ? [t("reason"), <English>{run.reason}</English>] : null,
+        run.reason && !(OVER.includes(run.state) && !isPassed(run)) ? [t("reason"), <English>{run.reason}</English>] : null,
         run.hazard ? [t("hazard"), run.hazard] : null,
       ] as ([string, JSX.Element | string] | null)[]).filter((one) => one !== null)}
     </Facts>
@@ -87,27 +91,15 @@ function RunActions({ run }: { run: Run }): JSX.Element | null {
     if (queued) go(to.run(queued.id));
   };
   const recorded = OVER.includes(run.state) && (run.files ?? []).includes("recording.mcap");
-  const waits = run.state === "queued" || run.state === "waiting_approval";
   return (
     <div class="row level">
       {may("operator") && OVER.includes(run.state) ? <button type="button" onClick={() => void again()}>{t("Again")}</button> : null}
       {may("operator") && OVER.includes(run.state) ? <a href={againWith(run)}>{t("Again with other values, bench or controller")}</a> : null}
-      {may("operator") && waits ? <button type="button" onClick={() => void attempt(() => post(`/runs/${run.id}/abort`))}>{t("Cancel")}</button> : null}
-      {run.state === "waiting_approval" && may("engineer") ? <button type="button" class="main" onClick={() => void attempt(() => post(`/runs/${run.id}/approve`))}>{t("Approve")}</button> : null}
+      {may("operator") && WAITING.includes(run.state) ? <button type="button" onClick={() => void attempt(() => post(`/runs/${run.id}/abort`))}>{t("Cancel")}</button> : null}
       {recorded && may("engineer") ? <a href={`${to.list("diagnoses")}?runs=${run.id}`}>{t("Diagnose")}</a> : null}
       {recorded && may("engineer") ? <a href={`${to.list("identifications")}?runs=${run.id}`}>{t("Identify a model")}</a> : null}
       {run.state === "ended" ? <a href={`${to.list("compare")}?runs=${run.id}`}>{t("Compare with another run")}</a> : null}
       <a href={`${to.list("runs")}?plan=${encodeURIComponent(run.plan)}`}>{t("All runs of this plan")}</a>
     </div>
   );
-}
-
-// A criterion is looked at where it was judged.
-function showSegment(view: View, segment: string): void {
-  const found = view.marks.find((mark) => mark.kind === "segment" && mark.name === segment);
-  if (!found || found.end_s == null) return;
-  const query = new URLSearchParams(location.search);
-  query.set("t", rangeText({ from: found.start_s, to: found.end_s }));
-  setQuery(query);
-  document.getElementById("section-plots")?.scrollIntoView();
 }

@@ -7,9 +7,9 @@ import { to } from "../../addresses.ts";
 import { useData } from "../../data.ts";
 import { figure, limitText, whole } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
-import { t, tn } from "../../i18n/text.ts";
+import { t, tn, tx } from "../../i18n/text.ts";
 import { go, useQuery } from "../../router.ts";
-import { Badge, Heading, Moment, Scroll, verdictOf } from "../../ui/parts.tsx";
+import { Badge, Heading, linkTo, Moment, Scroll, verdictOf } from "../../ui/parts.tsx";
 import { RunFilters } from "./run-filters.tsx";
 import { PAGE, queryFrom, sorted, toAddress, toService, type Order, type RunsQuery } from "./runs-query.ts";
 
@@ -38,7 +38,7 @@ export function Runs(): JSX.Element {
           {chosen.length ? <button type="button" class="plain" onClick={() => setChosen([])}>{t("Choose none")}</button> : null}
         </span>
       </div>
-      {shown && total === 0 ? <p class="quiet">{t("No run passes these filters.")}</p> : null}
+      {shown && total === 0 ? <p class="quiet">{[...toAddress({ ...query, page: 1, sort: "run", rising: false })].length ? t("No run passes these filters.") : tx("No run yet. A plan is started at <bench>a bench</bench> or from <plan>its own page</plan>.", { bench: linkTo(to.list("benches")), plan: linkTo(to.list("plans")) })}</p> : null}
       {shown && total > 0 ? <Table runs={shown.runs} query={query} chosen={chosen} busy={found.loading} onChoose={choose} onSort={(by) => set(sorted(query, by))} /> : null}
       {pages > 1 ? (
         <nav class="row pages" aria-label={t("Pages of runs")}>

@@ -30,7 +30,7 @@ export function StudyList({ kind }: { kind: Kind }): JSX.Element {
           <thead><tr><th scope="col" class="number">{t("number")}</th><th scope="col">{t("state")}</th>{isDiagnosis ? <th scope="col">{t("model")}</th> : null}<th scope="col">{t("runs")}</th><th scope="col">{t("asked for")}</th><th scope="col">{t("by")}</th></tr></thead>
           <tbody>{all.map((one) => <tr key={one.id}><td class="number"><a href={addressOf(one)}>{one.id}</a></td><td><Badge kind={one.state} />{one.reason ? <span class="reason"><English>{one.reason}</English></span> : null}</td>{isDiagnosis ? <td>{one.model}</td> : null}<td><RunLinks runs={one.runs} /><RecordingLinks recordings={one.recordings ?? []} /></td><td><Moment at={one.asked_at} /></td><td>{one.requested_by}</td></tr>)}</tbody>
         </table></Scroll>
-      ) : <p class="quiet">{t("None yet.")}</p>}
+      ) : <p class="quiet">{isDiagnosis ? t("None yet. A diagnosis compares runs or recordings with a model.") : t("None yet. A model is identified from runs or recordings with steps.")}</p>}
     </Loaded>
   );
 }

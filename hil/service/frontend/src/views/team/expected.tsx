@@ -4,24 +4,22 @@ import type { JSX } from "preact";
 import { ask } from "../../api/client.ts";
 import type { Run } from "../../api/types.ts";
 import { attempt } from "../../data.ts";
-import { moment } from "../../format.ts";
-import { t } from "../../i18n/text.ts";
+import { t, tx } from "../../i18n/text.ts";
 import { useMay, useMe } from "../../session.ts";
+import { Moment } from "../../ui/parts.tsx";
 
 export function WhenExpected({ run }: { run: Run }): JSX.Element | null {
   const held = run.waits_for;
-  const when = run.expected_start
-    ? run.expected_end
-      ? t("Expected from {start} to {end}", { start: moment(run.expected_start), end: moment(run.expected_end) })
-      : t("Expected from {start}", { start: moment(run.expected_start) })
-    : "";
-  if (!held && !when) return null;
   return (
     <>
-      {held ? <span class="reason">{t("Waits for the reservation of {who} until {end}: {reason}", { who: held.who, end: moment(held.ends), reason: held.reason })}</span> : null}
-      {when ? <span class="reason">{when}</span> : null}
+      {held ? <span class="reason">{tx("Waits for the reservation of {who} until {end}: {reason}", { who: held.who, end: <Moment at={held.ends} />, reason: held.reason })}</span> : null}
+      {run.expected_start ? <span class="reason"><Expected run={run} /></span> : null}
     </>
   );
+}
+
+export function Expected({ run: { expected_start: start, expected_end: end } }: { run: Run }): JSX.Element {
+  return <>{end ? tx("Expected from {start} to {end}", { start: <Moment at={start} />, end: <Moment at={end} /> }) : tx("Expected from {start}", { start: <Moment at={start} /> })}</>;
 }
 
 // Whoever has reserved the bench may let a run of somebody else start all the same.

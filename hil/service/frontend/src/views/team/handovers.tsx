@@ -5,10 +5,10 @@ import { useState } from "preact/hooks";
 import { post } from "../../api/client.ts";
 import type { Handover } from "../../api/types.ts";
 import { attempt, useData } from "../../data.ts";
-import { dayText, moment } from "../../format.ts";
-import { t } from "../../i18n/text.ts";
+import { dayText } from "../../format.ts";
+import { t, tx } from "../../i18n/text.ts";
 import { useMay } from "../../session.ts";
-import { Section } from "../../ui/parts.tsx";
+import { Moment, Section, Written } from "../../ui/parts.tsx";
 import { dayOf, shiftAt, type Shift } from "./local-times.ts";
 
 const AGAIN_MS = 5000;
@@ -42,8 +42,8 @@ function Note({ note }: { note: Handover }): JSX.Element {
   const shift = SHIFTS[note.shift]();
   return (
     <article class="note" aria-label={t("Hand-over note of {who}", { who: note.who })}>
-      <p class="quiet">{t("{who}, {shift} of {day}, written {at}", { who: note.who, shift, day: dayText(note.day), at: moment(note.at) })}</p>
-      <p class="written">{note.text}</p>
+      <p class="quiet">{tx("{who}, {shift} of {day}, written {at}", { who: note.who, shift, day: dayText(note.day), at: <Moment at={note.at} /> })}</p>
+      <Written>{note.text}</Written>
     </article>
   );
 }

@@ -6,9 +6,9 @@ import { ask, post } from "../../api/client.ts";
 import type { Reservation } from "../../api/types.ts";
 import { attempt, useData } from "../../data.ts";
 import { moment } from "../../format.ts";
-import { t } from "../../i18n/text.ts";
+import { t, tx } from "../../i18n/text.ts";
 import { useMay, useMe } from "../../session.ts";
-import { Section } from "../../ui/parts.tsx";
+import { Moment, Section } from "../../ui/parts.tsx";
 import { fieldOf, momentOf, nextHour } from "./local-times.ts";
 
 const AGAIN_MS = 5000;
@@ -36,7 +36,7 @@ function Row({ one, onRemove }: { one: Reservation; onRemove: () => void }): JSX
     <li class={now ? "now" : ""}>
       <span>
         {t("{who}: {reason}", { who: one.who, reason: one.reason })}
-        <span class="reason">{now ? t("now, until {end}", { end: moment(one.ends) }) : t("{begin} to {end}", { begin: moment(one.begins), end: moment(one.ends) })}</span>
+        <span class="reason">{now ? tx("now, until {end}", { end: <Moment at={one.ends} /> }) : tx("{begin} to {end}", { begin: <Moment at={one.begins} />, end: <Moment at={one.ends} /> })}</span>
       </span>
       {may("admin") || (may("operator") && one.who === me.name) ? <button type="button" aria-label={t("Remove the reservation of {who} at {begin}", { who: one.who, begin: moment(one.begins) })} onClick={onRemove}>{t("Remove")}</button> : null}
     </li>

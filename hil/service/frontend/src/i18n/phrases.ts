@@ -1,0 +1,47 @@
+// Sentences that the service says again and again, known by their form: shown in the reader's language.
+
+import { t } from "./text.ts";
+
+type Said = Record<string, string>;
+
+const named = (names = ""): string => (names === "RMCU and dynos" ? t("RMCU and dynos") : names);
+
+// The words in groups are names and figures; they stay as they are.
+const PHRASES: [RegExp, (of: Said) => string][] = [
+  [/^drives enabled$/, () => t("drives enabled")],
+  [/^(?<names>.+) answer$/, (of) => t("{names} answer", { names: named(of["names"]) })],
+  [/^(?<name>.+) \((?<kind>gain|phase) stabilization\) written, read back$/, (of) => (of["kind"] === "gain" ? t("{name} (gain stabilization) written, read back", of) : t("{name} (phase stabilization) written, read back", of))],
+  [/^dynos hold (?<speed>\S+) km\/h$/, (of) => t("dynos hold {speed} km/h", of)],
+  [/^dynos simulate the vehicle$/, () => t("dynos simulate the vehicle")],
+  [/^(?<segment>\S+) begins$/, (of) => t("{segment} begins", of)],
+  [/^(?<segment>\S+) ends$/, (of) => t("{segment} ends", of)],
+  [/^(?<segment>\S+) was stopped$/, (of) => t("{segment} was stopped", of)],
+  [/^confirmed by (?<names>.+)$/, (of) => t("confirmed by {names}", { names: named(of["names"]) })],
+  [/^held, torque off, the dynos hold their speed: (?<cause>.+)$/s, (of) => t("held, torque off, the dynos hold their speed: {cause}", of)],
+  [/^resumes after (?<seconds>\S+) s: (?<by>.+)$/, (of) => t("resumes after {seconds} s: {by}", of)],
+  [/^the bench loop was delayed by (?<seconds>\S+) s$/, (of) => t("the bench loop was delayed by {seconds} s", of)],
+  [/^executed: (?<steps>[^;]+); the wheels turn at (?<speed>\S+) rad\/s, the RMCU is in '(?<state>[^']+)'$/, (of) => t("executed: {steps}; the wheels turn at {speed} rad/s, the RMCU is in '{state}'", of)],
+  [/^cancelled by (?<person>.+)$/, (of) => t("cancelled by {person}", of)],
+  [/^stopped by the operator$/, () => t("stopped by the operator")],
+  [/^the service ended during the run; data measured before that is kept$/, () => t("the service ended during the run; data measured before that is kept")],
+  [/^the agent ended during the run; data measured before that is kept$/, () => t("the agent ended during the run; data measured before that is kept")],
+  [/^the service ended before the recording started; the run can be queued again$/, () => t("the service ended before the recording started; the run can be queued again")],
+  [/^the agent ended before the recording started; the run can be queued again$/, () => t("the agent ended before the recording started; the run can be queued again")],
+  [/^the service or agent that executed the run ended$/, () => t("the service or agent that executed the run ended")],
+  [/^no answer to '(?<question>.+)' within (?<seconds>\S+) s$/s, (of) => t("no answer to '{question}' within {seconds} s", of)],
+  [/^beginning$/, () => t("beginning")],
+  [/^its result is being stored$/, () => t("its result is being stored")],
+  [/^its files are being uploaded$/, () => t("its files are being uploaded")],
+  [/^its agent is not connected$/, () => t("its agent is not connected")],
+  [/^run (?<run>\d+) of an earlier service process is being ended$/, (of) => t("run {run} of an earlier service process is being ended", of)],
+  [/^emergency stop since (?<since>[^,]+), by (?<person>.+?): requested by .+? at the bench service$/, (of) => t("emergency stop since {since}, by {person}", of)],
+];
+
+// Null for a sentence that is none of them.
+export function translated(text: string): string | null {
+  for (const [form, words] of PHRASES) {
+    const found = form.exec(text);
+    if (found) return words(found.groups ?? {});
+  }
+  return null;
+}

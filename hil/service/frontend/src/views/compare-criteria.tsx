@@ -1,0 +1,47 @@
+// Criteria of runs side by side: their values, and how each differs from the first run.
+
+import type { JSX } from "preact";
+import type { Comparison } from "../api/types.ts";
+import { figure, joined } from "../format.ts";
+import { t } from "../i18n/text.ts";
+import { Badge, Scroll, Section } from "../ui/parts.tsx";
+import { changeOf, changeText } from "./compare-changes.ts";
+import { CriterionName } from "./criteria.tsx";
+
+type Row = Comparison["criteria"][number];
+
+export function ComparedCriteria({ pairs }: { pairs: Comparison[] }): JSX.Element {
+  const rows = pairs[0]?.criteria ?? [], first = pairs[0]?.first.id ?? 0;
+  return (
+    <Section title={t("Criteria")} label="criteria">
+      <Scroll label={t("Criteria of the runs")}>
+        <table>
+          <thead>
+            <tr><th scope="col">{t("criterion")}</th><th scope="col" class="number">{t("limit")}</th><th scope="col" class="number">{t("run {run}", { run: first })}</th>
+              {pairs.map(({ other }) => [<th key={other.id} scope="col" class="number">{t("run {run}", { run: other.id })}</th>, <th key={`${other.id} change`} scope="col" class="number">{t("run {other} − run {first}", { other: other.id, first })}</th>])}
+            </tr>
+          </thead>
+          <tbody>
+            {rows.map((row) => (
+              <tr key={row.id}><th scope="row"><CriterionName of={row} /></th><td class="number">{!row.limit ? "–" : row.limit.startsWith("<") ? row.limit : joined(row.limit, row.unit)}</td>
+                <td class="number">{figure(row.values[0], row.unit)} <Badge kind={row.verdicts[0]} /></td>
+                {pairs.map((pair) => <Other key={pair.other.id} row={pair.criteria.find((one) => one.id === row.id)} />)}
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </Scroll>
+    </Section>
+  );
+}
+
+function Other({ row }: { row: Row | undefined }): JSX.Element {
+  const change = row ? changeOf(row) : null, words = { better: t("better"), worse: t("worse"), same: t("the same"), open: "" };
+  if (!row) return <><td class="number">–</td><td class="number">–</td></>;
+  return (
+    <>
+      <td class="number">{figure(row.values[1], row.unit)} <Badge kind={row.verdicts[1]} /></td>
+      <td class={`number ${change?.kind === "better" ? "good" : change?.kind === "worse" ? "bad" : ""}`}>{!change ? "–" : change.kind === "same" ? words.same : changeText(change, row)}{change && change.kind !== "same" && words[change.kind] ? <span class="reason">{words[change.kind]}</span> : null}</td>
+    </>
+  );
+}

@@ -1,0 +1,94 @@
+"""The head of a run's page: why it waits, and why it did not pass, before anything else."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright import sync_api as playwright
+
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, heading, region, to
+from tests.hil.service.looks import refuse_hard_to_use
+from tests.hil.service.served import ASKING, SHORT, Served, served
+
+pytestmark = IN_A_BROWSER
+_FAILING = SHORT.replace("name: short", "name: failing").replace("upper: 400", "upper: 90")
+
+
+@pytest.fixture
+def there(tmp_path: Path) -> Iterator[Served]:
+    with served(tmp_path / "data", "--rate", "1000", state=tmp_path / "state") as service:
+        service.give("short", SHORT)
+        service.give("asking", ASKING)
+        service.give("failing", _FAILING)
+        yield service
+
+
+def test_a_run_that_waits_says_why_and_has_the_action_that_ends_it(
+    page: playwright.Page, there: Served
+) -> None:
+    asking = there.queue("asking")
+    there.until(asking, lambda run: run["prompt"] is not None)
+    waiting = there.queue()
+    to(page, there, f"runs/{waiting}")
+    why = region(page, "Why it waits")
+    expect(why).to_contain_text(f"Run {asking} (asking, by local) is on the bench and waits for an answer.")
+    expect(why.get_by_role("link", name=f"Run {asking}")).to_be_visible()
+    page.get_by_role("button", name="Emergency stop sim").click()
+    expect(why).to_contain_text("It waits for a latched emergency stop of sim.")
+    there.over(asking)
+    refuse_hard_to_use(page)
+    why.get_by_role("button", name="It is safe: reset the emergency stop").click()
+    there.over(waiting)
+    expect(page.locator("h1")).to_contain_text("pass")
+    expect(why).to_have_count(0)
+
+
+def test_the_page_of_a_queued_run_says_that_the_service_is_gone(
+    browser: playwright.Browser, there: Served
+) -> None:
+    there.post("/benches/sim/emergency-stop")
+    waiting = there.queue()
+    with browser.new_context(locale="en-US") as context:
+        page = context.new_page()
+        to(page, there, f"runs/{waiting}")
+        expect(region(page, "Why it waits")).to_be_visible()
+        there.process.kill()
+        expect(page.get_by_role("alert").filter(has_text="The service does not answer")).to_be_visible()
+
+
+def test_a_failed_run_begins_with_the_criterion_that_failed_and_leads_to_its_place(
+    page: playwright.Page, there: Served
+) -> None:
+    failed = there.queue("failing")
+    assert there.over(failed)["verdict"] == "fail"
+    to(page, there, f"runs/{failed}")
+    outcome = region(page, "Why it did not pass")
+    expect(outcome).to_contain_text(
+        re.compile(r"Peak of the shaft torque in s: \d+.N m, allowed is ≤ 90\.0.N m\.")
+    )
+    first = page.locator("main h1, main section").nth(1)
+    expect(first).to_have_attribute("aria-label", "Why it did not pass")
+    outcome.get_by_role("button", name="Show its segment in the plots").click()
+    expect(page).to_have_url(re.compile(r"\?t=\d"))
+    criteria = region(page, "Criteria").first
+    expect(criteria).to_contain_text("Peak of the shaft torque")
+    expect(criteria).to_contain_text("s.peak_shaft_torque")
+    criteria.get_by_text("What is measured").click()
+    expect(criteria).to_contain_text("the value farthest in the step's direction")
+    refuse_hard_to_use(page)
+
+
+def test_a_run_that_was_stopped_begins_with_what_stopped_it(page: playwright.Page, there: Served) -> None:
+    stopped = there.queue("asking")
+    there.until(stopped, lambda run: run["prompt"] is not None)
+    there.post(f"/runs/{stopped}/abort")
+    there.over(stopped)
+    to(page, there, f"runs/{stopped}")
+    outcome = region(page, "Why it did not pass")
+    expect(outcome).to_contain_text("stopped by the operator")
+    outcome.get_by_role("button", name="Show it in the plots").click()
+    expect(page).to_have_url(re.compile(r"\?t=\d"))
+    expect(heading(page, re.compile("asking"))).to_be_visible()
