@@ -12,6 +12,7 @@ from starlette.exceptions import HTTPException
 
 from hil.api_schemas.api import Problem, Record
 from hil.core.errors import BadInputError, HilError
+from hil.service.api._wording import problem_of
 from hil.service.files.uploads import NameTakenError
 from hil.service.store import DatabaseAwayError
 
@@ -92,9 +93,7 @@ async def _of_ours(request: Request, error: Exception) -> JSONResponse:
 async def _not_valid(request: Request, error: Exception) -> JSONResponse:
     del request
     assert isinstance(error, RequestValidationError)
-    first = error.errors()[0]
-    where = ".".join(str(part) for part in first["loc"])
-    return _answer(422, Problem(what=str(first["msg"])[:500], where=where[:200]))
+    return _answer(422, problem_of(error.errors()))
 
 
 async def _of_http(request: Request, error: Exception) -> JSONResponse:

@@ -9,7 +9,8 @@ import asyncio
 import contextlib
 import datetime
 import json
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from hil.core.errors import HilError
 from hil.service.jobs.job_repository import kill_left
 from hil.service.jobs.jobs import Jobs
 from hil.service.jobs.shared_results import SharedResults
+from hil.service.plain_words import in_plain_words
 
 _LAST_WORDS_S = 20.0
 _TUNED_WITHIN_S = 90.0  # an interrupted tuning writes its report, a run its end steps
@@ -39,6 +41,7 @@ class StudyAsked:
     by: str
     plan: str = ""
     bench: str = ""
+    names: Mapping[str, str] = field(default_factory=dict)  # of its files as people know them, by path
 
 
 class Studies(Jobs[StudyData]):
@@ -92,7 +95,7 @@ class Studies(Jobs[StudyData]):
         )
         self._records.keep(study)
         placed = replace(request, out=self.results(number).resolve())
-        self._begin(number, self._execute(number, placed, within_s))
+        self._begin(number, self._execute(number, placed, within_s, asked.names))
         return study
 
     def plans_folder(self) -> Path:
@@ -114,21 +117,23 @@ class Studies(Jobs[StudyData]):
             self._end(number, "cancelled", "cancelled")
         return found
 
-    async def _execute(self, number: int, request: StudyRequest, within_s: float) -> None:
+    async def _execute(
+        self, number: int, request: StudyRequest, within_s: float, names: Mapping[str, str]
+    ) -> None:
         try:
             self._records.change(number, state="running")
             tunes = isinstance(request, TuneRequest | AutotuneRequest)
             last_words_s = _TUNED_WITHIN_S if tunes else _LAST_WORDS_S
             async with self._process(number, request, last_words_s) as process:
                 code, reason = await asyncio.wait_for(process.over(), within_s)
-            self._end(number, *(("ended", "") if code == 0 else ("failed", reason)))
+            self._end(number, *(("ended", "") if code == 0 else ("failed", in_plain_words(reason, names))))
         except TimeoutError:
             self._end(number, "failed", f"took more than {within_s:g} s")
         except asyncio.CancelledError:
             self._end(number, "cancelled", "cancelled")
             raise
         except (HilError, OSError) as error:
-            self._end(number, "failed", str(error))
+            self._end(number, "failed", in_plain_words(str(error), names))
 
     def _progress(self, number: int) -> dict[str, Any]:
         del number

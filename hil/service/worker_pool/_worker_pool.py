@@ -11,6 +11,7 @@ from typing import Any
 
 from hil.core.errors import BadInputError, BenchError
 from hil.execution.background import FORECAST_BYTES, start_process
+from hil.service.plain_words import in_plain_words
 
 _WITHIN_S = 60.0
 #: What an answer begins with; JSON follows.
@@ -119,4 +120,5 @@ def _read(line: bytes) -> bytes:
         return line[len(ANSWERED) :]
     refused = json.loads(line[len(REFUSED) :])
     kind = BadInputError if refused["bad_input"] else BenchError
-    raise kind(refused["what"], where=refused["where"], fix=refused["fix"])
+    what, where, fix = (in_plain_words(refused[part]) for part in ("what", "where", "fix"))
+    raise kind(what, where=where, fix=fix)
