@@ -9,6 +9,7 @@ import asyncio
 import contextlib
 import datetime
 import json
+import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -42,6 +43,7 @@ class StudyAsked:
     plan: str = ""
     bench: str = ""
     names: Mapping[str, str] = field(default_factory=dict)  # of its files as people know them, by path
+    sequence: Path | None = None  # written for it alone: it goes with its end
 
 
 class Studies(Jobs[StudyData]):
@@ -54,10 +56,12 @@ class Studies(Jobs[StudyData]):
 
     def __init__(self, folder: Path, shared: SharedResults[StudyData]) -> None:
         super().__init__(folder, "study.json", StudyData, shared, "study", "studies")
+        self._sequences: dict[int, Path] = {}
         for study in self._records:
             if not self.is_over(study):
                 kill_left(self._records.folder_of(study.id))
                 self._end(study.id, "interrupted", "the service ended during the study; start it again")
+        shutil.rmtree(self.sequences_folder(), ignore_errors=True)  # of studies that are over by now
 
     def of_kind(self, kind: StudyKind | None) -> list[StudyData]:
         """Newest first, also those of other services."""
@@ -94,12 +98,14 @@ class Studies(Jobs[StudyData]):
             asked_at=datetime.datetime.now(datetime.UTC),
         )
         self._records.keep(study)
+        if asked.sequence is not None:
+            self._sequences[number] = asked.sequence
         placed = replace(request, out=self.results(number).resolve())
         self._begin(number, self._execute(number, placed, within_s, asked.names))
         return study
 
-    def plans_folder(self) -> Path:
-        """Where sequences of tunings are kept."""
+    def sequences_folder(self) -> Path:
+        """Where sequences of tunings are, each until its tuning is over."""
         return self._records.folder_of(0).parent / "sequences"
 
     def progress_of(self, number: int) -> dict[str, Any]:
@@ -140,4 +146,8 @@ class Studies(Jobs[StudyData]):
         return {}
 
     def _end(self, number: int, state: str, reason: str) -> None:
+        sequence = self._sequences.pop(number, None)
+        if sequence is not None:
+            with contextlib.suppress(OSError):
+                sequence.unlink(missing_ok=True)
         self._change(number, state=state, reason=reason)
