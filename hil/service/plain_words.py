@@ -7,7 +7,8 @@ is listed there, places of the service's machine are left out, and an option is 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from pathlib import Path
 
 #: Options that are fields of the page, or of a request.
 _FIELDS = {
@@ -29,15 +30,17 @@ _PLACE = re.compile(r"(?<![\w./:])/(?:[^\s/:;,'\"]+/)+(?P<name>[^\s/:;,'\"]*)")
 _ELSEWHERE = "options with -- are those of the command at a terminal: this page has none for it"
 
 
-def in_plain_words(text: str, names: Mapping[str, str] | None = None) -> str:
+def in_plain_words(text: str, names: Mapping[str, str], *, hide_places: bool = True) -> str:
     """A message of a command for whoever has no terminal.
 
     Args:
         names: what files are called, by their paths.
+        hide_places: whether other paths keep their last part alone; not where people write paths.
     """
-    for path in sorted(names or {}, key=len, reverse=True):
-        text = text.replace(path, (names or {})[path])
-    text = _PLACE.sub(lambda found: found["name"] or "a folder of the service", text)
+    for path in sorted(names, key=len, reverse=True):
+        text = text.replace(path, names[path])
+    if hide_places:
+        text = _PLACE.sub(lambda found: found["name"] or "a folder of the service", text)
     left: list[str] = []
 
     def field(found: re.Match[str]) -> str:
@@ -49,3 +52,21 @@ def in_plain_words(text: str, names: Mapping[str, str] | None = None) -> str:
 
     text = _OPTION.sub(field, text)
     return f"{text} ({_ELSEWHERE})" if left else text
+
+
+def without_folders(text: str, folders: Iterable[Path]) -> str:
+    """A message in which files below some folders are called by their names alone."""
+    for folder in folders:
+        text = re.sub(re.escape(str(folder.resolve())) + r"/(?:[^\s/:,'\"]+/)*", "", text)
+    return text
+
+
+def names_in(asked: object) -> dict[str, str]:
+    """Names of files by the paths that stand in what was asked, however deep."""
+    if isinstance(asked, Mapping):
+        return {path: name for one in asked.values() for path, name in names_in(one).items()}
+    if isinstance(asked, list | tuple):
+        return {path: name for one in asked for path, name in names_in(one).items()}
+    if isinstance(asked, str) and asked.startswith("/") and "\n" not in asked:
+        return {asked: Path(asked).name}
+    return {}

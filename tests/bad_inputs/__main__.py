@@ -13,6 +13,8 @@ from tests.bad_inputs.api_bounds import table_of, try_routes
 from tests.bad_inputs.case import BOUNDS, Case
 from tests.bad_inputs.inputs import make_inputs
 from tests.bad_inputs.page import BOUNDS_PAGE, PAGE, Tried, bounds_page_of, failures_of, page_of
+from tests.bad_inputs.route_cases import table_of as values_table_of
+from tests.bad_inputs.route_cases import try_values
 from tests.bad_inputs.trying import execute
 
 AT_ONCE = 2
@@ -47,12 +49,14 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as directory:
         tried = try_all(cases, Path(directory))
     failures = failures_of(tried)
+    values = [] if options.only else list(try_values())
+    failures += [fault for one in values for fault in one.faults]
     if options.write and any(case.kind == BOUNDS for case in cases):
         routes = list(try_routes())
         failures += [fault for route in routes for fault in route.faults]
         BOUNDS_PAGE.write_text(bounds_page_of(tried, table_of(routes)), "utf-8")
     if options.write and not options.only:
-        PAGE.write_text(page_of(tried), "utf-8")
+        PAGE.write_text(page_of(tried, values_table_of(values)), "utf-8")
     print(f"{len(tried)} tried, {len(failures)} faults")
     return 1 if failures else 0
 

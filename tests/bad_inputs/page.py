@@ -59,6 +59,15 @@ for it grew. That process starts with the first file.
 
 """
 
+_VALUES_INTRODUCTION = """
+## Requests to the service
+
+On one service with a simulated bench, to the routes of what people share, give and sign in with: values that
+must not be taken. Each is refused with a status of the asker's (400 to 499) and with words; moments are
+shortened. Bodies too large, too deep or too long are in [bounds of inputs](bounds.md).
+
+"""
+
 Tried = tuple[Case, Outcome]
 
 
@@ -73,15 +82,15 @@ def bounds_page_of(tried: Sequence[Tried], routes: str) -> str:
     return _BOUNDS_INTRODUCTION + "\n".join(rows) + _ROUTES_INTRODUCTION + routes
 
 
-def page_of(tried: Sequence[Tried]) -> str:
-    """The whole page."""
+def page_of(tried: Sequence[Tried], routes: str = "") -> str:
+    """The whole page; `routes` is the table of requests to the service's API."""
     parts = [_INTRODUCTION, _counts(tried)]
     for command in _ORDER:
         own = [(case, outcome) for case, outcome in tried if case.command == command]
         if own:
             title = "hil" if command == "hil" else f"hil {command}"
             parts.append(f"## {title}\n\n| tried | exit code | message |\n|---|---|---|\n" + _rows(own))
-    return "\n".join(parts)
+    return "\n".join(parts) + (_VALUES_INTRODUCTION + routes if routes else "")
 
 
 def failures_of(tried: Sequence[Tried]) -> list[str]:

@@ -59,7 +59,8 @@ def _what(error: Mapping[str, Any]) -> str:
     what = _KINDS.get(kind) or needed(error)
     value = error.get("input")
     shown = isinstance(value, int | float) and not isinstance(value, bool) and what.startswith("must")
-    return printable(f"{what}, not {value:g}" if shown else what, 500)
+    number = f"{value:g}" if isinstance(value, float) else str(value)
+    return printable(f"{what}, not {number}" if shown else what, 500)
 
 
 def _of_pattern(pattern: str) -> str:
@@ -73,6 +74,8 @@ def _of_pattern(pattern: str) -> str:
         return f"must have {letters}, and begin with a letter or digit{kinds}"
     if found := _HEXADECIMAL.match(pattern):
         return f"must be {found['count']} hexadecimal digits, in small letters"
+    if " ?=" in pattern:
+        return "must be CHANNEL=COLUMN, as motor_speed_rad_s=n_EM, unit=rpm"
     if r"[^\s" in pattern:
         return "must have something in it, and no control characters"
     return "has characters that it must not have"
