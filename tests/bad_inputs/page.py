@@ -59,12 +59,11 @@ for it grew. That process starts with the first file.
 
 """
 
-_VALUES_INTRODUCTION = """
-## Requests to the service
-
+_REQUESTS = "\n## Requests to the service\n"
+_VALUES_INTRODUCTION = f"""{_REQUESTS}
 On one service with a simulated bench, to the routes of what people share, give and sign in with: values that
-must not be taken. Each is refused with a status of the asker's (400 to 499) and with words; moments are
-shortened. Bodies too large, too deep or too long are in [bounds of inputs](bounds.md).
+must not be taken (`--requests` makes this part alone). Each is refused with a status of the asker's (400 to
+499) and with words; moments are shortened. Bodies too large, too deep or too long are in [bounds of inputs](bounds.md).
 
 """
 
@@ -90,7 +89,12 @@ def page_of(tried: Sequence[Tried], routes: str = "") -> str:
         if own:
             title = "hil" if command == "hil" else f"hil {command}"
             parts.append(f"## {title}\n\n| tried | exit code | message |\n|---|---|---|\n" + _rows(own))
-    return "\n".join(parts) + (_VALUES_INTRODUCTION + routes if routes else "")
+    return with_requests("\n".join(parts), routes) if routes else "\n".join(parts)
+
+
+def with_requests(page: str, routes: str) -> str:
+    """The page with its last part, requests to the service, made anew."""
+    return page.partition(_REQUESTS)[0] + _VALUES_INTRODUCTION + routes
 
 
 def failures_of(tried: Sequence[Tried]) -> list[str]:
