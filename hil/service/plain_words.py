@@ -22,6 +22,7 @@ _FIELDS = {
     "--controller": "the controller",
     "--draws": "draws",
     "--out": "another name",
+    "--resume": "“Resume”",
 }
 #: A command with its option says where it is entered; an option alone does not.
 _OPTION = re.compile(r"(?P<command>\bhil(?: [a-z]+)+ )?(?<![\w-])(?P<option>--[a-z][a-z-]*[a-z])")

@@ -63,7 +63,8 @@ _REQUESTS = "\n## Requests to the service\n"
 _VALUES_INTRODUCTION = f"""{_REQUESTS}
 On one service with a simulated bench, to the routes of what people share, give and sign in with: values that
 must not be taken (`--requests` makes this part alone). Each is refused with a status of the asker's (400 to
-499) and with words; moments are shortened. Bodies too large, too deep or too long are in [bounds of inputs](bounds.md).
+499) and with words; moments are shortened. Bodies too large, too deep or too long are in
+[bounds of inputs](bounds.md).
 
 """
 

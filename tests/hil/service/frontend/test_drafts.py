@@ -95,9 +95,11 @@ def test_leaving_what_is_not_saved_is_asked_about(
 def test_a_saved_text_leaves_no_draft(page: playwright.Page, there: Served, asked: list[str]) -> None:
     there.give("shared", FIRST)
     to(page, there, "plans/shared?write=on")
-    _typed(page, "Text of the plan", "upper: 400", "upper: 373")
+    text = _typed(page, "Text of the plan", "upper: 400", "upper: 373")
+    text.fill(text.input_value().replace("default: 100", "default: 123"))
     page.get_by_role("button", name="Keep as shared").click()
     expect(heading(page, "shared")).to_be_visible()
+    expect(region(page, "Variables, table")).to_contain_text("123 N m")  # as it is now
     page.get_by_role("link", name="Edit", exact=True).click()
     expect(page.get_by_label("Text of the plan")).to_have_value(re.compile("upper: 373"))
     expect(page.get_by_text(_RESTORED)).to_have_count(0)

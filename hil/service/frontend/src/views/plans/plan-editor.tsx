@@ -27,9 +27,10 @@ interface Options extends Start {
   builtIn: boolean;
   basedOn?: string;
   onTaken?: (theirs: Start) => void; // what is written on from then
+  onSaved?: () => void;
 }
 
-export function PlanEditor({ text: given, tag: givenTag, item, builtIn, basedOn = "", onTaken }: Options): JSX.Element {
+export function PlanEditor({ text: given, tag: givenTag, item, builtIn, basedOn = "", onTaken, onSaved }: Options): JSX.Element {
   const draft = useDraft<Start>(item, { text: given, tag: givenTag }, (one) => one.text === given), { text, tag } = draft.value;
   const [theirs, setTheirs] = useState<Theirs | null>(null), name = nameIn(text);
   const setText = (typed: string) => draft.set({ text: typed, tag });
@@ -42,6 +43,7 @@ export function PlanEditor({ text: given, tag: givenTag, item, builtIn, basedOn 
     setTheirs(there);
     if (there) return;
     draft.saved();
+    onSaved?.();
     go(to.plan(name));
   });
   const take = () => {
@@ -71,10 +73,11 @@ interface EditOptions {
   item: string;
   builtIn: boolean;
   copied: (text: string) => string;
+  onSaved: () => void;
 }
 
 // The editor of a text that there is; of a plan that is built in, of a copy. What is saved replaces today's text.
-export function EditPlan({ name, path, item, builtIn, copied }: EditOptions): JSX.Element {
+export function EditPlan({ name, path, item, builtIn, copied, onSaved }: EditOptions): JSX.Element {
   const [start, setStart] = useState<(Start & { turn: number }) | null>(null), today = `/plans/${encodeURIComponent(name)}/text`;
   useEffect(() => {
     const control = new AbortController();
@@ -86,5 +89,5 @@ export function EditPlan({ name, path, item, builtIn, copied }: EditOptions): JS
   }, [path]);
   if (start === null) return <p class="quiet">{t("Loading the text …")}</p>;
   const onTaken = ({ text, tag }: Start) => setStart({ text, tag, turn: start.turn + 1 });
-  return <PlanEditor key={start.turn} text={start.text} tag={start.tag} item={item} builtIn={builtIn} basedOn={name} onTaken={onTaken} />;
+  return <PlanEditor key={start.turn} text={start.text} tag={start.tag} item={item} builtIn={builtIn} basedOn={name} onTaken={onTaken} onSaved={onSaved} />;
 }

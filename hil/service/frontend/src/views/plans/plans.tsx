@@ -53,10 +53,10 @@ export function Plans(): JSX.Element {
 
 export function PlanView({ name }: { name: string }): JSX.Element {
   const plan = useData<Plan>(`/plans/${encodeURIComponent(name)}`);
-  return <Loaded of={plan} what={t("plan {name}", { name })}>{(found) => <Found plan={found} />}</Loaded>;
+  return <Loaded of={plan} what={t("plan {name}", { name })}>{(found) => <Found plan={found} onSaved={plan.again} />}</Loaded>;
 }
 
-function Found({ plan }: { plan: Plan }): JSX.Element {
+function Found({ plan, onSaved }: { plan: Plan; onSaved: () => void }): JSX.Element {
   const may = useMay(), [query] = useQuery(), textPath = `/plans/${encodeURIComponent(plan.name)}/text`, version = Number(query.get("version")) || null;
   const remove = async () => {
     if (!confirm(t("Remove the plan {name}? Its runs stay.", { name: plan.name }))) return;
@@ -64,7 +64,7 @@ function Found({ plan }: { plan: Plan }): JSX.Element {
   };
   const variables = Object.entries(plan.variables);
   const edited = (text: string) => (plan.built_in ? renamed(text, `${plan.name}_copy`) : text);
-  if (query.get("write") === "on" && may("engineer")) return <><Heading kind={<a href={to.plan(plan.name)}>{plan.name}</a>}>{plan.built_in ? t("A copy of this plan") : t("Edit the plan")}</Heading><EditPlan key={itemOf("plan", plan.name, version)} name={plan.name} path={version === null ? textPath : versionPath("plan", plan.name, version)} item={itemOf("plan", plan.name, version)} builtIn={plan.built_in} copied={edited} /></>;
+  if (query.get("write") === "on" && may("engineer")) return <><Heading kind={<a href={to.plan(plan.name)}>{plan.name}</a>}>{plan.built_in ? t("A copy of this plan") : t("Edit the plan")}</Heading><EditPlan key={itemOf("plan", plan.name, version)} name={plan.name} path={version === null ? textPath : versionPath("plan", plan.name, version)} item={itemOf("plan", plan.name, version)} builtIn={plan.built_in} copied={edited} onSaved={onSaved} /></>;
   return (
     <>
       <Heading kind={plan.built_in ? t("Built-in plan {name}", { name: plan.name }) : t("Given plan {name}", { name: plan.name })}>{plan.title || plan.name}</Heading>
