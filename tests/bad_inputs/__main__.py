@@ -20,6 +20,7 @@ from tests.bad_inputs.page import (
     failures_of,
     page_of,
     with_requests,
+    with_routes,
 )
 from tests.bad_inputs.route_cases import table_of as values_table_of
 from tests.bad_inputs.route_cases import try_values
@@ -55,7 +56,7 @@ def main() -> int:
     parser.add_argument(
         "--requests",
         action="store_true",
-        help="only requests to the service; with --write they replace their part of bad-inputs.md",
+        help="only requests to the service; with --write they replace their parts of both pages",
     )
     options = parser.parse_args()
     if options.requests:
@@ -77,11 +78,13 @@ def main() -> int:
 
 
 def _requests(*, write: bool) -> int:
-    found = list(try_values())
+    found, routes = list(try_values()), list(try_routes())
     failures = [fault for one in found for fault in one.faults]
+    failures += [fault for one in routes for fault in one.faults]
     if write:
+        BOUNDS_PAGE.write_text(with_routes(BOUNDS_PAGE.read_text("utf-8"), table_of(routes)), "utf-8")
         PAGE.write_text(with_requests(PAGE.read_text("utf-8"), values_table_of(found)), "utf-8")
-    print("\n".join([*failures, f"{len(found)} tried, {len(failures)} faults"]))
+    print("\n".join([*failures, f"{len(found) + len(routes)} tried, {len(failures)} faults"]))
     return 1 if failures else 0
 
 

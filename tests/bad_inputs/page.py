@@ -48,10 +48,8 @@ MCAP is read piece by piece.
 |---|---|---|---|---|
 """
 
-_ROUTES_INTRODUCTION = """
-
-## Routes of the API
-
+_ROUTES = "\n\n## Routes of the API\n"
+_ROUTES_INTRODUCTION = f"""{_ROUTES}
 Every route that takes a body, on one service with a simulated bench: 3 MB, 100,000 lists in each other
 (of TOML a key of as many parts), a text of 200,000 characters, 20,000 keys. Given are the status of each
 answer, how long the slowest took, and by how much the memory of the service and of the process that reads
@@ -79,7 +77,12 @@ def bounds_page_of(tried: Sequence[Tried], routes: str) -> str:
         for case, outcome in tried
         if case.kind == BOUNDS
     ]
-    return _BOUNDS_INTRODUCTION + "\n".join(rows) + _ROUTES_INTRODUCTION + routes
+    return with_routes(_BOUNDS_INTRODUCTION + "\n".join(rows), routes)
+
+
+def with_routes(page: str, routes: str) -> str:
+    """The page of bounds with its last part, routes of the API, made anew."""
+    return page.partition(_ROUTES)[0].rstrip("\n") + _ROUTES_INTRODUCTION + routes
 
 
 def page_of(tried: Sequence[Tried], routes: str = "") -> str:

@@ -11,6 +11,8 @@ from hil.core.errors.mistakes import needed
 from hil.core.errors.wording import listed, printable
 
 _PLACES = ("body", "query", "path", "header", "cookie")
+#: More are counted: a hostile request may have ten thousand.
+_MOST_NAMED = 20
 _NAME = re.compile(r"\^\(?\[A-Za-z0-9\]\[A-Za-z0-9(?P<signs>[^\]]*)\]\{0,(?P<most>\d+)\}")
 _HEXADECIMAL = re.compile(r"\^\(?\[0-9a-f\]\{(?P<count>\d+)\}")
 _MOMENT = "must be a date and a time with their zone, as 2026-03-01T14:30:00+01:00"
@@ -31,12 +33,14 @@ _KINDS = {
 
 def problem_of(errors: Sequence[Mapping[str, Any]]) -> Problem:
     """All that is wrong with a request, of pydantic's errors."""
-    found = list(dict.fromkeys((_field(error), _what(error)) for error in errors))
-    if len(found) == 1:
+    found = list(dict.fromkeys((_field(error), _what(error)) for error in errors[:_MOST_NAMED]))
+    left = len(errors) - _MOST_NAMED
+    if len(found) == 1 and left <= 0:
         field, what = found[0]
         return Problem(what=what, where=field)
     lines = listed([f"{field} {what}" if field else what for field, what in found])
-    return Problem(what=f"{len(found)} fields are wrong{lines}")
+    more = f"\n  and {left} more" if left > 0 else ""
+    return Problem(what=f"{len(found) + max(left, 0)} fields are wrong{lines}{more}")
 
 
 def _field(error: Mapping[str, Any]) -> str:

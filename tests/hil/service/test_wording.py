@@ -98,6 +98,13 @@ def test_every_field_that_is_wrong_is_named(service: Served) -> None:
         assert line in found["what"]
 
 
+def test_of_very_many_fields_some_are_named_and_all_are_counted(service: Served) -> None:
+    found = _problem(service, "POST", "/recordings", {f"k{number}": 1 for number in range(1000)})
+    assert found["what"].startswith("1002 fields are wrong\n")
+    assert found["what"].endswith("\n  and 982 more")
+    assert len(found["what"]) < 2000
+
+
 def test_a_parameter_of_an_address_is_named(service: Served) -> None:
     found = _problem(service, "GET", "/runs?most=0")
     assert (found["where"], found["what"]) == ("most", "must be at least 1")

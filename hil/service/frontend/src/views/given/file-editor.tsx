@@ -56,21 +56,21 @@ export function FileEditor({ kind, text: given, item, basedOn = "" }: Options): 
   const missing = !name ? t("It has no name yet.") : !isName ? t("A name has letters, digits, _ and -.") : taken.includes(name) ? t("{name} is there already, and stays what it is: choose another name.", { name }) : "";
   return (
     <>
-    <DraftNotice of={draft} />
-    {theirs ? <Conflict theirs={theirs} mine={text} keep={{ name: t("Keep mine as {name}", { name: next }), do: keepMine }} take={take} /> : null}
-    <div class="columns">
-      <div>
-        {inText === null ? <NameField label={t("Name")} value={name} onChange={setName} /> : null}
-        <TextEditor label={of.label} kind="toml" schema={kind} text={text} onText={setText} checked={checked} keep={{ name: isName ? t("Keep as {name}", { name }) : t("Keep it"), missing, do: () => void keep(text, name) }} />
+      <DraftNotice of={draft} />
+      {theirs ? <Conflict theirs={theirs} mine={text} keep={{ name: t("Keep mine as {name}", { name: next }), do: keepMine }} take={take} /> : null}
+      <div class="columns">
+        <div>
+          {inText === null ? <NameField label={t("Name")} value={name} onChange={setName} /> : null}
+          <TextEditor label={of.label} kind="toml" schema={kind} text={text} onText={setText} checked={checked} keep={{ name: isName ? t("Keep as {name}", { name }) : t("Keep it"), missing, do: () => void keep(text, name) }} />
+        </div>
+        <div>
+          <Section title={t("What follows from it")} label="figures">
+            {kind === "controller" ? <ChooseModel value={model} onChange={setModel} /> : null}
+            <div aria-live="polite">{check && !check.mistakes.length ? <Figures of={check} /> : <p class="quiet">{t("It is computed when no mistake is left.")}</p>}</div>
+          </Section>
+          <ValuesForm schema={kind} text={text} onText={setText} />
+        </div>
       </div>
-      <div>
-        <Section title={t("What follows from it")} label="figures">
-          {kind === "controller" ? <ChooseModel value={model} onChange={setModel} /> : null}
-          <div aria-live="polite">{check && !check.mistakes.length ? <Figures of={check} /> : <p class="quiet">{t("It is computed when no mistake is left.")}</p>}</div>
-        </Section>
-        <ValuesForm schema={kind} text={text} onText={setText} />
-      </div>
-    </div>
     </>
   );
 }
