@@ -136,7 +136,7 @@ def test_a_client_plans_begins_and_ends_a_sequence(there: Served) -> None:
     study = client.autotune(AutotuningWanted(**planned.model_dump(), **limits, confirm="A. Name"))
     followed = client.autotuning_progress(study.id)
     first = next(one for one in followed if one.decisions)
-    assert (first.decisions[0].stage, "A. Name" in first.consent) == ("consent", True)
+    assert first.decisions[0].stage == "consent"
     client.cancel_study(study.id)
     *_, last = client.autotuning_progress(study.id)
     assert last.study.state in ("cancelled", "ended")
