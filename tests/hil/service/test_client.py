@@ -95,7 +95,7 @@ def test_files_that_a_plan_names_travel_with_it(service: Served, tmp_path: Path)
         (("run", "none"), "there is no plan 'none'"),
         (("run", "acceptance", "--bench", "none"), "there is no bench 'none'"),
         (("run", "acceptance", "--repeat", "2"), "does not go with --server"),
-        (("check", "acceptance"), "a service accepts the commands 'run' and 'campaign'"),
+        (("check", "acceptance"), "a service accepts the commands 'run', 'campaign' and 'list runs'"),
         (("run", "acceptance", "--bench", "../x"), "the service rejects it"),
     ],
 )
