@@ -4,10 +4,13 @@ from hil.api_schemas.api import RunData, RunWanted
 from hil.api_schemas.campaign import CampaignWanted
 from hil.api_schemas.recording import RecordingData
 from hil.api_schemas.study import DiagnosisWanted, IdentificationWanted
+from hil.api_schemas.tuning import AutotuningPlanned, AutotuningWanted, TuningWanted
 from hil.client._client import Client
 from hil.client._requests import RefusedError
 
 __all__ = [
+    "AutotuningPlanned",
+    "AutotuningWanted",
     "CampaignWanted",
     "Client",
     "DiagnosisWanted",
@@ -16,4 +19,5 @@ __all__ = [
     "RefusedError",
     "RunData",
     "RunWanted",
+    "TuningWanted",
 ]

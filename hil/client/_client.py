@@ -9,6 +9,7 @@ from hil.client._people_requests import PeopleRequests
 from hil.client._recording_requests import RecordingRequests
 from hil.client._run_requests import RunRequests
 from hil.client._study_requests import StudyRequests
+from hil.client._tuning_requests import TuningRequests
 
 
 class Client(
@@ -17,6 +18,7 @@ class Client(
     DesignRequests,
     RecordingRequests,
     StudyRequests,
+    TuningRequests,
     AgentRequests,
     PeopleRequests,
 ):

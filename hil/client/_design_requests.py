@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+
 from hil.api_schemas.api import PlanData
 from hil.api_schemas.design import (
     CloudData,
@@ -28,9 +30,18 @@ class DesignRequests(Requests):
         """All plans."""
         return self._several(PlanData, "/plans")
 
-    def give_plan(self, name: str, text: str) -> PlanData:
-        """Give a plan (YAML), or replace one that was given."""
-        return self._one(PlanData, "PUT", f"/plans/{part(name)}", text)
+    def give_plan(self, name: str, text: str, instead_of: str | None = None) -> PlanData:
+        """Give a plan (YAML), or replace one that was given.
+
+        Args:
+            instead_of: the text that it replaces, '' if there is to be none: another one that was saved
+                meanwhile is refused. None replaces whatever is there.
+        """
+        query = ""
+        if instead_of is not None:
+            sha256 = hashlib.sha256(instead_of.encode()).hexdigest() if instead_of else ""
+            query = f"?instead_of={sha256}"
+        return self._one(PlanData, "PUT", f"/plans/{part(name)}{query}", text)
 
     def copy_plan(self, plan: str, wanted: PlanCopyWanted) -> PlanData:
         """Give a copy of a plan that loads other controllers."""

@@ -29,11 +29,11 @@ class StudyRequests(Requests):
         return self._one(StudyData, "POST", "/diagnoses", wanted)
 
     def studies(self) -> list[StudyData]:
-        """Identifications and diagnoses, newest first."""
+        """Identifications, diagnoses and tunings, newest first."""
         return self._several(StudyData, "/studies")
 
     def study(self, study: int) -> StudyData:
-        """An identification or a diagnosis."""
+        """An identification, a diagnosis or a tuning."""
         return self._one(StudyData, "GET", f"/studies/{study}")
 
     def cancel_study(self, study: int) -> StudyData:
@@ -43,6 +43,14 @@ class StudyRequests(Requests):
     def remove_study(self, study: int) -> None:
         """Remove one that is over, with its files."""
         self._done("DELETE", f"/studies/{study}")
+
+    def download_of_study(self, study: int, name: str, path: Path) -> None:
+        """Write a file of a study that is over, whole or not at all: a report, a model, a controller.
+
+        Raises:
+            BadInputError: the place cannot be written.
+        """
+        self._download(f"/studies/{study}/files/{part(name)}", path)
 
     def identification(self, study: int) -> IdentificationData:
         """What an identification found."""

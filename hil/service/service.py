@@ -132,7 +132,7 @@ class Service:
         self.served_benches = ServedBenches(folder / "benches", folder.resolve())
         given_benches = self.served_benches.there(lambda name: _refused(name, benches, held))
         benches = {**benches, **given_benches}
-        self._own, self._folder = benches, folder
+        self._own, self.folder = benches, folder
         self.database = Presence(engine)
         self.runs, self.run_list, self.leases = RunStore(engine), RunList(engine), LeaseStore(engine)
         self.reservations, self.handovers = ReservationStore(engine), HandoverStore(engine)
@@ -357,7 +357,7 @@ class Service:
     async def watch_database(self) -> None:
         """Ask a database that is away whether it is back, until the service is closed."""
         shown = ""
-        self.audit_problem = await apart(partial(problem_of, self.log, self._folder))
+        self.audit_problem = await apart(partial(problem_of, self.log, self.folder))
         while not self.closing:
             await asyncio.sleep(_ASK_S)
             self.agents.look()
@@ -381,7 +381,7 @@ class Service:
         self.deferred_audit.write()
         with contextlib.suppress(DatabaseAwayError):
             if not self.audit_problem:
-                await apart(partial(problem_of, self.log, self._folder))
+                await apart(partial(problem_of, self.log, self.folder))
             self._held.give_back()
 
 

@@ -57,6 +57,8 @@ EXTRA = {
     ("run", "--model"): ("--model", "model.toml"),
     ("diagnose", "--holdout"): ("--holdout", "recording.mcap"),
     ("design", "--frf"): ("--frf", "short.csv"),
+    ("serve", "--notices"): ("--notices", "notices.toml"),
+    ("serve", "--sign-in"): ("--sign-in", "sign-in.toml"),
 }
 #: command, argument, its file, a file of another format that the user may have meant
 FILE_ARGUMENTS = (
@@ -87,6 +89,8 @@ FILE_ARGUMENTS = (
     ("bench doctor", "BENCH", "bench.toml", "model.toml"),
     ("bench sim", "BENCH", "bench.toml", "model.toml"),
     ("serve", "--bench", "bench.toml", "model.toml"),
+    ("serve", "--notices", "notices.toml", "bench.toml"),
+    ("serve", "--sign-in", "sign-in.toml", "bench.toml"),
     ("bench agent", "--bench", "bench.toml", "model.toml"),
 )
 READ_ELSEWHERE = (

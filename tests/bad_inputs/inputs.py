@@ -26,6 +26,18 @@ bench: bench.toml
 draws: 2
 tolerance: {sensor_noise: 1}
 """
+NOTICES = """\
+[[webhook]]
+url = "https://chat.example.org/hook"
+"""
+SIGN_IN = """\
+address = "https://bench.example.org"
+issuer = "https://login.example.org"
+client_id = "bench"
+
+[roles]
+everybody = "viewer"
+"""
 #: Every input by name; `done` is the folder of a run.
 NAMES = (
     "plan.yaml",
@@ -40,6 +52,8 @@ NAMES = (
     "frames.log",
     "done",
     "key.pem",
+    "notices.toml",
+    "sign-in.toml",
 )
 #: An Ed25519 key of these tests; it signs nothing else.
 KEY = """\
@@ -62,6 +76,8 @@ def make_inputs(folder: Path) -> None:
     bench = (folder / "bench.toml").read_text("utf-8").replace('"three_inertia.toml"', '"model.toml"')
     (folder / "bench.toml").write_text(bench, "utf-8")
     (folder / "key.pem").write_text(KEY, "utf-8")
+    (folder / "notices.toml").write_text(NOTICES, "utf-8")
+    (folder / "sign-in.toml").write_text(SIGN_IN, "utf-8")
     (folder / "plan.yaml").write_text(PLAN, "utf-8")
     (folder / "campaign.yaml").write_text(CAMPAIGN, "utf-8")
     _hil(folder, "run", "plan.yaml", "--bench", "bench.toml", "--out", "whole")

@@ -48,14 +48,21 @@ MCAP is read piece by piece.
 |---|---|---|---|---|
 """
 
-_ROUTES_INTRODUCTION = """
-
-## Routes of the API
-
+_ROUTES = "\n\n## Routes of the API\n"
+_ROUTES_INTRODUCTION = f"""{_ROUTES}
 Every route that takes a body, on one service with a simulated bench: 3 MB, 100,000 lists in each other
 (of TOML a key of as many parts), a text of 200,000 characters, 20,000 keys. Given are the status of each
 answer, how long the slowest took, and by how much the memory of the service and of the process that reads
 for it grew. That process starts with the first file.
+
+"""
+
+_REQUESTS = "\n## Requests to the service\n"
+_VALUES_INTRODUCTION = f"""{_REQUESTS}
+On one service with a simulated bench, to the routes of what people share, give and sign in with: values that
+must not be taken (`--requests` makes this part alone). Each is refused with a status of the asker's (400 to
+499) and with words; moments are shortened. Bodies too large, too deep or too long are in
+[bounds of inputs](bounds.md).
 
 """
 
@@ -70,18 +77,28 @@ def bounds_page_of(tried: Sequence[Tried], routes: str) -> str:
         for case, outcome in tried
         if case.kind == BOUNDS
     ]
-    return _BOUNDS_INTRODUCTION + "\n".join(rows) + _ROUTES_INTRODUCTION + routes
+    return with_routes(_BOUNDS_INTRODUCTION + "\n".join(rows), routes)
 
 
-def page_of(tried: Sequence[Tried]) -> str:
-    """The whole page."""
+def with_routes(page: str, routes: str) -> str:
+    """The page of bounds with its last part, routes of the API, made anew."""
+    return page.partition(_ROUTES)[0].rstrip("\n") + _ROUTES_INTRODUCTION + routes
+
+
+def page_of(tried: Sequence[Tried], routes: str = "") -> str:
+    """The whole page; `routes` is the table of requests to the service's API."""
     parts = [_INTRODUCTION, _counts(tried)]
     for command in _ORDER:
         own = [(case, outcome) for case, outcome in tried if case.command == command]
         if own:
             title = "hil" if command == "hil" else f"hil {command}"
             parts.append(f"## {title}\n\n| tried | exit code | message |\n|---|---|---|\n" + _rows(own))
-    return "\n".join(parts)
+    return with_requests("\n".join(parts), routes) if routes else "\n".join(parts)
+
+
+def with_requests(page: str, routes: str) -> str:
+    """The page with its last part, requests to the service, made anew."""
+    return page.partition(_REQUESTS)[0] + _VALUES_INTRODUCTION + routes
 
 
 def failures_of(tried: Sequence[Tried]) -> list[str]:

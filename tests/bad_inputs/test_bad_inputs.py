@@ -10,6 +10,7 @@ from tests.bad_inputs.bound_cases import bound_cases
 from tests.bad_inputs.case import FILES, REFUSED, SIGNALS, Case, Outcome
 from tests.bad_inputs.judging import HALF_WRITTEN, HANG, TRACEBACK, UNCLEAR, WRONG_CODE, faults_of
 from tests.bad_inputs.page import PAGE, failures_of, page_of
+from tests.bad_inputs.route_cases import try_values
 
 CASE = Case("export", FILES, "a case", ("--json",), (REFUSED,))
 GOOD = Outcome(2, "", "error: x: is missing\n  give another\n", (), (), ())
@@ -73,6 +74,13 @@ def test_every_route_refuses_what_is_too_large_too_deep_too_long_or_too_many():
     routes = list(try_routes())
     assert len(routes) >= 20
     assert [fault for route in routes for fault in route.faults] == []
+
+
+@pytest.mark.slow
+def test_values_that_a_route_must_not_take_are_refused_in_words():
+    found = list(try_values())
+    assert len(found) >= 50
+    assert [fault for one in found for fault in one.faults] == []
 
 
 @pytest.mark.slow

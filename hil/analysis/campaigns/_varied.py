@@ -39,7 +39,7 @@ def axes_of(file: CampaignFile, plan: Plan, model: Model, *, controlled: bool) -
                 )
             unit, check = _of_group(group, name, plan, model, controlled, where, _firsts(file, name))
             for value in values:
-                _tried(check, value, where)
+                _tried(check, column, value, where)
             found.append(Axis(group, name, unit, values))
     with mistakes.collected():
         _refuse_alternatives(found, file)
@@ -104,11 +104,11 @@ def _refuse(objection: str) -> None:
         raise BadInputError(objection)
 
 
-def _tried(check: Check, value: float, where: str) -> None:
+def _tried(check: Check, column: str, value: float, where: str) -> None:
     try:
         check(value)
     except BadInputError as error:
-        raise BadInputError(f"{value:g}: {error.what}", where=where, fix=error.fix) from None
+        raise BadInputError(f"{column} = {value:g}: {error.what}", where=where, fix=error.fix) from None
 
 
 def _refuse_alternatives(axes: list[Axis], file: CampaignFile) -> None:

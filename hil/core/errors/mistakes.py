@@ -113,6 +113,7 @@ def _on_a_line(mistake: Mistake, line: int) -> str:
 _HEADER = re.compile(r"^\s*\[\s*([^\[\]]+?)\s*\]\s*(?:#.*)?$")
 _ENTRY = re.compile(r"^\s*\[\[\s*([^\[\]]+?)\s*\]\]\s*(?:#.*)?$")
 _KEY = re.compile(r"""^\s*((?:[\w-]+|"[^"]*"|'[^']*')(?:\s*\.\s*(?:[\w-]+|"[^"]*"|'[^']*'))*)\s*=""")
+_ENTRY_OF_A_LIST = re.compile(r"\[[^\[]*\]$")
 _PART = re.compile(r"""[\w-]+|"[^"]*"|'[^']*'""")
 
 
@@ -124,7 +125,7 @@ def line_of(text: str, key: str) -> int | None:
 def nearest(lines: Mapping[str, int], key: str) -> int | None:
     """Line of a dotted key of `lines_of`, or of the nearest around it; None if none has one."""
     while key and key not in lines:
-        key = key.rpartition(".")[0]
+        key = _ENTRY_OF_A_LIST.sub("", key) if key.endswith("]") else key.rpartition(".")[0]
     return lines.get(key)
 
 
@@ -168,14 +169,24 @@ def mistakes_of(
     """
     tables = {keyed(mistake).key for mistake in known or ()}
     found, meant = [], _meant(error, model)
+    places = [mistake["loc"] for mistake in error.errors()]
     for mistake in error.errors():
-        if mistake["type"] == "missing" and mistake["loc"] in meant:
+        loc = mistake["loc"]
+        if mistake["type"] == "missing" and loc in meant:
             continue
+        if mistake["type"] == "too_short" and any(one[: len(loc)] == loc != one for one in places):
+            continue  # it counts the entries that are right
         place = (key, *mistake["loc"]) if key else mistake["loc"]
-        name = printable(".".join(str(part) for part in place if part != "[key]"), 120)
+        name = printable(_named(place), 120)
         if not any(table == name or table.startswith(f"{name}.") for table in tables):
             found.append(_in_words(name, dict(mistake), model))
     return found
+
+
+def _named(place: Iterable[int | str]) -> str:
+    """A dotted key; entries of lists are counted from 1, as `lines_of` counts them."""
+    parts = [f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in place if part != "[key]"]
+    return "".join(parts).removeprefix(".")
 
 
 def _in_words(name: str, mistake: dict[str, Any], model: type[BaseModel]) -> str:
@@ -184,6 +195,8 @@ def _in_words(name: str, mistake: dict[str, Any], model: type[BaseModel]) -> str
     if mistake["type"] == "extra_forbidden":
         return f"{name}: unknown key{_suggestion(mistake['loc'], model)}"
     value = mistake["input"]
+    if mistake["type"] == "value_error" and isinstance(value, dict):  # of several of its keys
+        return f"{name}: {needed(mistake)}"
     shown = "a table" if isinstance(value, dict) else printable(repr(value), 60)
     return f"{name} = {shown}: {needed(mistake)}"
 

@@ -70,6 +70,8 @@ FormatNumber = Annotated[int, BeforeValidator(readable_format), WithJsonSchema(F
 
 #: Model and controller files hold some thousand numbers at most; tomllib needs a second for each of these.
 LARGEST_BYTES = 5_000_000
+#: Where tomllib says that a text is no TOML.
+_PLACE = re.compile(r" \(at (?:line (?P<line>\d+), column \d+|end of document)\)$")
 #: Parts of a key or of a table's name. tomllib needs the square of their number: 25 s for 80 kB of `a.a.a…`.
 MOST_PARTS = 32
 _PART = re.compile(r"""\"(?:[^"\\\n]|\\.)*+\"|'[^'\n]*+'|[A-Za-z0-9_-]++""")
@@ -83,13 +85,13 @@ _TOKEN = re.compile(
 )
 
 
-def toml_text(path: Path) -> str:
-    """Text of a TOML file.
+def toml_text(path: Path, fix: str = "give the TOML file of a model, a controller or a bench") -> str:
+    """Text of a TOML file; `fix` is what to do if it is none.
 
     Raises:
         BadInputError: not readable, no regular file, or far too large.
     """
-    return read_text(path, LARGEST_BYTES, "give the TOML file of a model, a controller or a bench")
+    return read_text(path, LARGEST_BYTES, fix)
 
 
 def parse_toml(text: str, where: str, fix: str = "") -> dict[str, Any]:
@@ -102,9 +104,20 @@ def parse_toml(text: str, where: str, fix: str = "") -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except ValueError as error:  # also numbers of more digits than Python converts
-        raise BadInputError(f"not a TOML file: {printable(error, 200)}", where=where, fix=fix) from error
+        what, place = _placed(str(error), text)
+        raise BadInputError(f"not a TOML file: {what}", where=f"{where}{place}", fix=fix) from error
     except RecursionError as error:
         raise BadInputError("not a TOML file: nested too deeply", where=where, fix=fix) from error
+
+
+def _placed(what: str, text: str) -> tuple[str, str]:
+    """What tomllib says, and the place that it says it of, as other mistakes have theirs."""
+    found = _PLACE.search(what)
+    if found is None:
+        return printable(what, 200), ""
+    line = found["line"] or str(text.rstrip().count("\n") + 1)
+    at_end = "" if found["line"] else ", at the end of the file"
+    return f"{printable(what[: found.start()], 200)}{at_end}", f", line {line}"
 
 
 def _refuse_long_keys(text: str, where: str) -> None:

@@ -12,6 +12,7 @@ from hil.core.errors import BadInputError
 from hil.core.files import read_text
 from hil.service.api._access import Engineer, TheService, Viewer
 from hil.service.api._given_files import GIVEN, body_of, described, file_text, readable
+from hil.service.api._holds import refuse_held
 from hil.service.api._problems import RefusedError, missing
 from hil.service.api._versions import BasedOn
 from hil.service.files.catalogues import bench_file_data
@@ -77,8 +78,9 @@ async def end_bench_file_service(bench: FileName, service: TheService, me: Engin
     found = described(service.bench_files, bench_file_data, "bench file", bench)
     if not service.served_benches.has(bench) or service.own(bench) is None:
         raise missing("bench of a bench file", bench)
-    if not service.drop_bench(bench):
-        raise RefusedError(409, "runs wait or are under way there", where=bench, fix="cancel or await them")
+    refuse_held(service, bench)
+    if not service.drop_bench(bench):  # a run has begun just now
+        raise RefusedError(409, "a run is under way there", where=bench, fix="await it, or abort it")
     service.log.add(me.name, me.role, "bench taken out of service", bench)
     return _with_served(service, found)
 

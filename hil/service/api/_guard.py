@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
+import logging
 import re
 import time
 from collections import OrderedDict
@@ -27,6 +29,8 @@ _POLICY = (
     "default-src 'self'; img-src 'self' data:; object-src 'none'; base-uri 'none'; "
     "frame-ancestors 'none'; form-action 'self'"
 )
+
+logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -89,7 +93,19 @@ class Guard:
             return
         limited = _Limited(receive, _most(scope)).receive
         sending = _with_headers(send, self._stop.seen_from(headers.get("host", "")))
-        await in_turns(self._answered(scope, limited, sending))
+        begun = False
+
+        async def noted(message: Message) -> None:
+            nonlocal begun
+            begun = True
+            await sending(message)
+
+        try:
+            await in_turns(self._answered(scope, limited, noted))
+        except asyncio.CancelledError:  # the server does not wait longer: that is no error of ours
+            logger.info("%s %s was not answered: the service ends", scope["method"], scope["path"])
+            if not begun:
+                await _refuse(send, 503, "the service ends", "ask again when it is up")
 
     async def _answered(self, scope: Scope, receive: Receive, send: Send) -> None:
         await self._app(scope, receive, send)
@@ -150,8 +166,8 @@ def _fits(length: str, most: int) -> bool:
     return length.isascii() and length.isdecimal() and int(length[:12]) <= most
 
 
-async def _refuse(send: Send, status: int, what: str) -> None:
-    body = json.dumps({"what": what, "where": "", "fix": ""}).encode()
+async def _refuse(send: Send, status: int, what: str, fix: str = "") -> None:
+    body = json.dumps({"what": what, "where": "", "fix": fix}).encode()
     headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
     if status == 429:
         headers.append((b"retry-after", b"1"))

@@ -28,7 +28,11 @@ async def log_in(login: Login, service: TheService, request: Request, response: 
     """Open a session of the page with a token; its cookie is not a token, and scripts cannot read it."""
     owner = service.tokens.owner_of(login.secret)
     if owner is None:
-        raise RefusedError(401, "is not a valid token")
+        raise RefusedError(
+            401,
+            "this token is not known, has expired or was revoked",
+            fix="enter it as it was made, without anything around it, or ask an administrator for a new one",
+        )
     session, by_tls = service.tokens.open_session(owner), request.url.scheme == "https"
     response.set_cookie(
         COOKIE, session, httponly=True, samesite="strict", secure=by_tls, max_age=int(SESSION_S)

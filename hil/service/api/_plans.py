@@ -13,7 +13,7 @@ from hil.core.errors import BadInputError
 from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError, missing
-from hil.service.api._versions import BasedOn
+from hil.service.api._versions import BasedOn, InsteadOf
 from hil.service.files.plan_checks import mistakes_of
 
 router = APIRouter(tags=["plans"])
@@ -39,12 +39,13 @@ async def get_plan(plan: PlanName, service: TheService, me: Viewer) -> PlanData:
 
 @router.get("/plans/{plan}/text", name="get_plan_text", response_class=Response)
 async def get_plan_text(plan: PlanName, service: TheService, me: Viewer) -> Response:
-    """A plan's YAML."""
+    """A plan's YAML; the ETag of an uploaded one is what `instead_of` takes."""
     del me
+    sha256 = service.plans.sha256(plan)  # before the text: what replaces it meanwhile has another
     text = service.plans.text(plan)
     if text is None:
         raise missing("plan", plan)
-    return Response(text, media_type=_YAML)
+    return Response(text, media_type=_YAML, headers={"etag": f'"{sha256}"'} if sha256 else None)
 
 
 @router.put(
@@ -53,14 +54,19 @@ async def get_plan_text(plan: PlanName, service: TheService, me: Viewer) -> Resp
     openapi_extra={"requestBody": {"required": True, "content": {_YAML: {"schema": {"type": "string"}}}}},
 )
 async def give_plan(
-    plan: PlanName, request: Request, service: TheService, me: Engineer, based_on: BasedOn = ""
+    plan: PlanName,
+    request: Request,
+    service: TheService,
+    me: Engineer,
+    based_on: BasedOn = "",
+    instead_of: InsteadOf = None,
 ) -> PlanData:
-    """Upload a plan (YAML), or replace an uploaded one."""
+    """Upload a plan (YAML), or replace an uploaded one: only the text `instead_of`, if that is given."""
     try:
         text = (await request.body()).decode("utf-8")
     except UnicodeDecodeError as error:
         raise RefusedError(422, "is not UTF-8", where=plan) from error
-    found = await service.upload_reader.plan(plan, text, me.name, based_on)
+    found = await service.upload_reader.plan(plan, text, me.name, based_on, instead_of)
     service.log.add(me.name, me.role, "plan given", plan)
     return found
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any, TypeVar
 
 from fastapi import FastAPI, Request
@@ -12,10 +13,14 @@ from starlette.exceptions import HTTPException
 
 from hil.api_schemas.api import Problem, Record
 from hil.core.errors import BadInputError, HilError
+from hil.service.api._wording import problem_of
 from hil.service.files.uploads import NameTakenError
+from hil.service.plain_words import without_folders
 from hil.service.store import DatabaseAwayError
 
 R = TypeVar("R", bound=Record)
+#: Where the shipped plans, models and controllers lie: they are called by their names.
+_PACKAGES = Path(__file__).parents[3]
 _MEANINGS = {
     400: "the body does not match its content type",
     401: "the token is missing or not valid",
@@ -80,21 +85,20 @@ async def _refused(request: Request, error: Exception) -> JSONResponse:
 
 
 async def _of_ours(request: Request, error: Exception) -> JSONResponse:
-    del request
     assert isinstance(error, HilError)
     status = 422 if isinstance(error, BadInputError) else 503
     if isinstance(error, NameTakenError):
         status = 409
     headers = {"Retry-After": "5"} if isinstance(error, DatabaseAwayError) else None
-    return _answer(status, Problem(what=error.what, where=error.where, fix=error.fix), headers)
+    folders = (request.app.state.service.folder, _PACKAGES)
+    what, where, fix = (without_folders(text, folders) for text in (error.what, error.where, error.fix))
+    return _answer(status, Problem(what=what, where=where, fix=fix), headers)
 
 
 async def _not_valid(request: Request, error: Exception) -> JSONResponse:
     del request
     assert isinstance(error, RequestValidationError)
-    first = error.errors()[0]
-    where = ".".join(str(part) for part in first["loc"])
-    return _answer(422, Problem(what=str(first["msg"])[:500], where=where[:200]))
+    return _answer(422, problem_of(error.errors()))
 
 
 async def _of_http(request: Request, error: Exception) -> JSONResponse:

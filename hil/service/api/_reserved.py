@@ -29,7 +29,7 @@ def refuse_leased(service: Service, bench: str, me: Me, begins: datetime.datetim
     """
     lease = service.leases.of(bench)
     if lease is not None and lease.holder != me.name and begins < lease.until:
-        what = f"{lease.holder} holds the bench until {_moment(lease.until)}"
+        what = f"{lease.holder} holds the bench until {moment(lease.until)}"
         raise RefusedError(409, what, where=bench, fix="choose another time")
 
 
@@ -45,8 +45,9 @@ def taken(found: ReservationData) -> RefusedError:
 
 def span(found: ReservationData) -> str:
     """From when to when, in words."""
-    return f"from {_moment(found.begins)} to {_moment(found.ends)}"
+    return f"from {moment(found.begins)} to {moment(found.ends)}"
 
 
-def _moment(at: datetime.datetime) -> str:
+def moment(at: datetime.datetime) -> str:
+    """A moment in words."""
     return f"{at.astimezone(datetime.UTC):%Y-%m-%d %H:%M} UTC"

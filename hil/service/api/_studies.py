@@ -39,8 +39,10 @@ async def identify(
     wanted: Annotated[IdentificationWanted, Body()], service: TheService, me: Engineer
 ) -> StudyData:
     """Identify a model from runs, as `hil identify`; takes seconds to minutes."""
-    request = IdentifyRequest(recordings=await _files(service, wanted.runs, wanted.recordings))
-    asked = StudyAsked("identification", wanted.runs, wanted.recordings, "", me.name)
+    files = await _files(service, wanted.runs, wanted.recordings)
+    request = IdentifyRequest(recordings=[path for path, _ in files])
+    names = _by_path(files)
+    asked = StudyAsked("identification", wanted.runs, wanted.recordings, "", me.name, names=names)
     found = service.studies.add(asked, request, _IDENTIFIED_WITHIN_S)
     return _logged(service, me, found)
 
@@ -53,16 +55,19 @@ async def diagnose(
     model = service.models.path(wanted.model)
     if model is None:
         raise missing("model", wanted.model)
+    files = await _files(service, wanted.runs, wanted.recordings)
+    holdout = await _files(service, wanted.holdout, wanted.holdout_recordings)
     request = DiagnoseRequest(
-        recordings=await _files(service, wanted.runs, wanted.recordings),
+        recordings=[path for path, _ in files],
         model=model.resolve(),
-        holdout=await _files(service, wanted.holdout, wanted.holdout_recordings),
+        holdout=[path for path, _ in holdout],
         at_most=wanted.at_most_min,
     )
     within_s = 60.0 * wanted.at_most_min + _WRITTEN_WITHIN_S
     runs = [*wanted.runs, *wanted.holdout]
     recordings = [*wanted.recordings, *wanted.holdout_recordings]
-    asked = StudyAsked("diagnosis", runs, recordings, wanted.model, me.name)
+    names = {**_by_path([*files, *holdout]), str(model.resolve()): f"the model {wanted.model}"}
+    asked = StudyAsked("diagnosis", runs, recordings, wanted.model, me.name, names=names)
     found = service.studies.add(asked, request, within_s)
     return _logged(service, me, found)
 
@@ -149,7 +154,8 @@ def _findings(content: dict[str, Any]) -> dict[str, Any]:
     return {**{name: content[name] for name in same}, **facts}
 
 
-async def _files(service: Service, runs: list[int], recordings: list[int]) -> list[Path]:
+async def _files(service: Service, runs: list[int], recordings: list[int]) -> list[tuple[Path, str]]:
+    """Where recordings are, and what people call each."""
     found = []
     for number in runs:
         run = service.runs.get(number)
@@ -157,7 +163,8 @@ async def _files(service: Service, runs: list[int], recordings: list[int]) -> li
             raise missing("run", number)
         if run.state not in OVER or RECORDING not in service.with_progress(run).files:
             raise RefusedError(409, f"run {number} has no recording", fix="choose runs that have a recording")
-        found.append((await service.file_of(number, RECORDING)).resolve())
+        path = await service.file_of(number, RECORDING)
+        found.append((path.resolve(), f"the recording of run {number}"))
     for number in recordings:
         given = service.recordings.get(number)
         if given is None:
@@ -166,8 +173,13 @@ async def _files(service: Service, runs: list[int], recordings: list[int]) -> li
             raise RefusedError(
                 409, f"recording {number} is {given.state}", fix="choose recordings that are ready"
             )
-        found.append((await service.recordings.file(given)).resolve())
+        path = await service.recordings.file(given)
+        found.append((path.resolve(), f"the recording {number} ({given.name})"))
     return found
+
+
+def _by_path(files: list[tuple[Path, str]]) -> dict[str, str]:
+    return {str(path): name for path, name in files}
 
 
 def _logged(service: Service, me: Me, study: StudyData) -> StudyData:

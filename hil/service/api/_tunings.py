@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import secrets
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -81,14 +82,12 @@ async def plan_autotuning(
 ) -> EnvelopeData:
     """What a sequence would ask of its bench at most; nothing moves."""
     del me
-    sequence = service.studies.plans_folder() / "planned.yaml"
-    _write_sequence(sequence, wanted, service)
-    found = await service.worker_pool.ask(
-        "envelope",
-        sequence=str(sequence.resolve()),
-        model=str(_model(service, wanted.model)),
-        bench=_bench(service, wanted.bench),
-    )
+    model, bench = str(_model(service, wanted.model)), _bench(service, wanted.bench)
+    sequence = _written_sequence(wanted, service)
+    try:
+        found = await service.worker_pool.ask("envelope", sequence=str(sequence), model=model, bench=bench)
+    finally:
+        sequence.unlink(missing_ok=True)
     return EnvelopeData(bench=wanted.bench, **found)
 
 
@@ -97,20 +96,25 @@ async def autotune(
     wanted: Annotated[AutotuningWanted, Body()], service: TheService, me: Engineer
 ) -> StudyData:
     """Begin a sequence on a simulated bench, as `hil autotune`, within the envelope consented to."""
-    name = f"{me.name}-{os.urandom(6).hex()}.yaml".replace("/", "_")
-    sequence = service.studies.plans_folder() / name
-    _write_sequence(sequence, wanted, service)
+    model, bench = _model(service, wanted.model), _bench(service, wanted.bench)
+    sequence = _written_sequence(wanted, service)
     request = AutotuneRequest(
-        sequence=str(sequence.resolve()),
-        model=_model(service, wanted.model),
-        bench=_bench(service, wanted.bench),
+        sequence=str(sequence),
+        model=model,
+        bench=bench,
         envelope={**wanted.largest, "bench_time_s": wanted.bench_time_s},
         confirm=wanted.confirm,
         operator=me.name,
         processes=_processes(),
     )
-    asked = StudyAsked("autotuning", [], [], wanted.model, me.name, wanted.plan, wanted.bench)
-    found = service.studies.add(asked, request, _SEQUENCE_WITHIN_S)
+    asked = StudyAsked(
+        "autotuning", [], [], wanted.model, me.name, wanted.plan, wanted.bench, sequence=sequence
+    )
+    try:
+        found = service.studies.add(asked, request, _SEQUENCE_WITHIN_S)
+    except BaseException:
+        sequence.unlink(missing_ok=True)
+        raise
     text = f"{wanted.plan} on {wanted.bench}, consented to by {wanted.confirm}"
     service.log.add(me.name, me.role, "autotuning", f"study {found.id}", text)
     return found
@@ -154,7 +158,8 @@ async def _written(service: Service, of: StudyData, name: str) -> dict[str, Any]
     return {}
 
 
-def _write_sequence(path: Path, wanted: AutotuningPlanned, service: Service) -> None:
+def _written_sequence(wanted: AutotuningPlanned, service: Service) -> Path:
+    """A file of it, which whoever asked removes."""
     content = {
         "name": "autotune",
         "identify": _plan(service, wanted.identify),
@@ -165,8 +170,11 @@ def _write_sequence(path: Path, wanted: AutotuningPlanned, service: Service) -> 
         "draws": wanted.draws,
         "diagnose_minutes": wanted.diagnose_min,
     }
-    make_directory(path.parent)
+    folder = service.studies.sequences_folder()
+    make_directory(folder)
+    path = folder.resolve() / f"{secrets.token_hex(8)}.yaml"
     write_atomically(path, yaml.safe_dump(content, sort_keys=False))
+    return path
 
 
 def _processes() -> int:

@@ -17,6 +17,9 @@ router = APIRouter(prefix="/versions", tags=["plans"])
 #: Name of the file that a given one was made from: both are versions of one family.
 BasedOn = Annotated[str, Query(pattern=r"^([A-Za-z0-9][A-Za-z0-9_.-]{0,63})?$")]
 
+#: SHA-256 of the text that a new one replaces, as its ETag; empty if the name has to be free.
+InsteadOf = Annotated[str | None, Query(pattern=r"^([0-9a-f]{64})?$")]
+
 
 @router.get("/{kind}/{name}", name="list_versions")
 async def list_versions(

@@ -9,8 +9,6 @@ from hil.core.errors import BadInputError
 
 _SEVERAL = re.compile(r"\d+ mistakes\n")
 _PLACE = re.compile(r"(?:.*(?:: |, ))?line (?P<line>\d+)(?:, key '(?P<key>[^']*)')?")
-#: Where a file is no TOML, as the standard library has it.
-_IN_TOML = re.compile(r"\(at line (?P<line>\d+), column \d+\)")
 _ON_A_LINE = re.compile(rf"{_PLACE.pattern}: (?P<text>.*)", re.DOTALL)
 
 
@@ -20,7 +18,7 @@ def mistakes_of(error: BadInputError) -> list[PlanMistake]:
         lines = error.what.split("\n  ")[1:]
         return [_mistake(_ON_A_LINE.fullmatch(one), one) for one in lines]
     text = f"{error.what}; {error.fix}" if error.fix else error.what
-    return [_mistake(_PLACE.match(error.where) or _IN_TOML.search(error.what), text)]
+    return [_mistake(_PLACE.match(error.where), text)]
 
 
 def _mistake(found: re.Match[str] | None, text: str) -> PlanMistake:

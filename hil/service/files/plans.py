@@ -12,7 +12,8 @@ from hil.api_schemas.api import PlanData
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
 from hil.service.files.pictures import Pictures
-from hil.service.files.uploads import NameTakenError, Uploads
+from hil.service.files.uploads import NameTakenError, Uploads, giver_of
+from hil.service.store import GivenText
 from hil.service.worker_pool.plan_reading import GivenPlan, data_of, given_plan, read_given, renamed
 from test_plans import Choices, Plan, library_plans, load_plan, plan_from_text
 from test_plans.yaml_document import read_yaml
@@ -84,6 +85,11 @@ class Plans:
         path = self._path(name)
         return None if path is None else read_text(path)
 
+    def sha256(self, name: str) -> str:
+        """SHA-256 of the text of a plan that was given, as a newer one names what it replaces; else ''."""
+        there = None if name in self._built_in else self._given.text(name)
+        return "" if there is None else there.sha256
+
     def source(self, name: str) -> Path:
         """Where a plan that was queued, here or elsewhere, would lie now: beside what it loads."""
         if name in self._built_in:
@@ -99,6 +105,7 @@ class Plans:
         replace: bool = True,
         read: GivenPlan | None = None,
         based_on: str = "",
+        instead_of: str | None = None,
     ) -> PlanData:
         """Keep a plan; one of the same name is replaced. Runs that are queued keep theirs.
 
@@ -107,14 +114,18 @@ class Plans:
             replace: whether one of the same name may be replaced.
             based_on: name of the plan that it was made from.
             read: what it says, if another process has read it; None reads it here.
+            instead_of: SHA-256 of the text that it may replace, '' if the name has to be free; None replaces
+                whatever is there.
 
         Raises:
-            NameTakenError: a built-in plan has the name, or somebody else has given one just now.
+            NameTakenError: a built-in plan has the name, or somebody else has given one meanwhile.
             BadInputError: all that is wrong with it.
         """
         if name in self._built_in:
             raise NameTakenError("is the name of a built-in plan", where=name, fix="give it another name")
         before = self._given.text(name) if replace else None
+        if instead_of is not None:
+            _refuse_another(name, before, instead_of, text)
         read = read or read_given(name, text, self._with_controllers())
         fix = "look at it, then give yours again, or under another name"
         self._given.give(name, text, by, instead_of=before, based_on=based_on, fix=fix)
@@ -186,6 +197,25 @@ class Plans:
         self._controllers.paths()
         self._pictures.bring()
         return self._given.folder
+
+
+def _refuse_another(name: str, there: GivenText | None, instead_of: str, text: str) -> None:
+    """Refuse to replace a plan that its writer has not seen; the same text may be given again.
+
+    Raises:
+        NameTakenError: says who gave what is there, and when.
+    """
+    if there is None:
+        if instead_of:
+            what = "was removed after you began to write"
+            raise NameTakenError(what, where=name, fix="give it as a new plan, or leave it removed")
+        return
+    if instead_of != there.sha256 and text != there.text:
+        what = f"was saved by {giver_of(there)}"
+        if instead_of:
+            what = f"{what}, after you began to write"
+        fix = "compare both texts, then give yours as a newer version, or another name, or take theirs"
+        raise NameTakenError(what, where=name, fix=fix)
 
 
 def _hashed(text: str) -> str:

@@ -40,8 +40,14 @@ class UploadReader:
             what = f"needs more than {READ_WITHIN_S:g} s of processor time to read"
             raise BadInputError(what, where=name, fix="make it shorter") from error
 
-    async def plan(self, name: str, text: str, by: str, based_on: str = "") -> PlanData:
+    async def plan(
+        self, name: str, text: str, by: str, based_on: str = "", instead_of: str | None = None
+    ) -> PlanData:
         """Keep a plan, read by another process first.
+
+        Args:
+            instead_of: SHA-256 of the text that it may replace, '' if the name has to be free; None replaces
+                whatever is there.
 
         Raises:
             NameTakenError: a built-in plan has the name, or somebody else has given one just now.
@@ -50,7 +56,7 @@ class UploadReader:
         folder = str(self._plans.fresh_folder().resolve())
         found = await self.read("plan", name, text, folder=folder)
         read = GivenPlan(PlanData.model_validate(found["data"]), tuple(found["files"]))
-        return self._plans.give(name, text, by, read=read, based_on=based_on)
+        return self._plans.give(name, text, by, read=read, based_on=based_on, instead_of=instead_of)
 
     async def check_file(
         self, kind: WrittenKind, name: str, text: str, models: Mapping[str, Path], model: str = ""

@@ -6,6 +6,7 @@ whatever the moment at which a service is killed, and whoever gave or removed it
 
 from __future__ import annotations
 
+import datetime
 from pathlib import Path
 
 from hil.api_schemas.upload import GivenKind
@@ -82,7 +83,7 @@ class Uploads:
         path = self.path(name)
         if not kept or path is None:
             there = self.text(name)
-            giver = f", given by {there.given_by}" if there is not None and there.given_by else ""
+            giver = f", given by {giver_of(there)}" if there is not None and there.given_by else ""
             raise NameTakenError(f"is already used for other content{giver}", where=name, fix=fix)
         return path
 
@@ -105,6 +106,12 @@ class Uploads:
 
     def _place(self, name: str) -> Path:
         return self.folder / f"{name}{self._ending}"
+
+
+def giver_of(there: GivenText) -> str:
+    """Who gave it, and when."""
+    at = there.given_at.astimezone(datetime.UTC)
+    return f"{there.given_by or 'somebody'} at {at:%Y-%m-%d %H:%M} UTC"
 
 
 def _gone(path: Path) -> None:

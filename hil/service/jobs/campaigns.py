@@ -33,6 +33,7 @@ from hil.core.files.locks import HeldError, lock_on
 from hil.service.jobs.job_repository import kill_left
 from hil.service.jobs.jobs import Jobs
 from hil.service.jobs.shared_results import SharedResults
+from hil.service.plain_words import in_plain_words
 from hil.service.worker_pool import WorkerPool
 
 _LOOK_S = 1.0
@@ -258,7 +259,7 @@ class Campaigns(Jobs[CampaignData]):
         elif code == _INTERRUPTED:
             changes |= {"state": "cancelled", "reason": "cancelled"}
         else:
-            changes |= {"state": "failed", "reason": reason}
+            changes |= {"state": "failed", "reason": in_plain_words(reason, {})}
         self._change(number, **changes)
 
     def _passed(self, number: int) -> bool | None:

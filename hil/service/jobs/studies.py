@@ -9,7 +9,9 @@ import asyncio
 import contextlib
 import datetime
 import json
-from dataclasses import dataclass, replace
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +22,7 @@ from hil.core.errors import HilError
 from hil.service.jobs.job_repository import kill_left
 from hil.service.jobs.jobs import Jobs
 from hil.service.jobs.shared_results import SharedResults
+from hil.service.plain_words import in_plain_words
 
 _LAST_WORDS_S = 20.0
 _TUNED_WITHIN_S = 90.0  # an interrupted tuning writes its report, a run its end steps
@@ -39,6 +42,8 @@ class StudyAsked:
     by: str
     plan: str = ""
     bench: str = ""
+    names: Mapping[str, str] = field(default_factory=dict)  # of its files as people know them, by path
+    sequence: Path | None = None  # written for it alone: it goes with its end
 
 
 class Studies(Jobs[StudyData]):
@@ -51,10 +56,12 @@ class Studies(Jobs[StudyData]):
 
     def __init__(self, folder: Path, shared: SharedResults[StudyData]) -> None:
         super().__init__(folder, "study.json", StudyData, shared, "study", "studies")
+        self._sequences: dict[int, Path] = {}
         for study in self._records:
             if not self.is_over(study):
                 kill_left(self._records.folder_of(study.id))
                 self._end(study.id, "interrupted", "the service ended during the study; start it again")
+        shutil.rmtree(self.sequences_folder(), ignore_errors=True)  # of studies that are over by now
 
     def of_kind(self, kind: StudyKind | None) -> list[StudyData]:
         """Newest first, also those of other services."""
@@ -91,12 +98,14 @@ class Studies(Jobs[StudyData]):
             asked_at=datetime.datetime.now(datetime.UTC),
         )
         self._records.keep(study)
+        if asked.sequence is not None:
+            self._sequences[number] = asked.sequence
         placed = replace(request, out=self.results(number).resolve())
-        self._begin(number, self._execute(number, placed, within_s))
+        self._begin(number, self._execute(number, placed, within_s, asked.names))
         return study
 
-    def plans_folder(self) -> Path:
-        """Where sequences of tunings are kept."""
+    def sequences_folder(self) -> Path:
+        """Where sequences of tunings are, each until its tuning is over."""
         return self._records.folder_of(0).parent / "sequences"
 
     def progress_of(self, number: int) -> dict[str, Any]:
@@ -114,25 +123,31 @@ class Studies(Jobs[StudyData]):
             self._end(number, "cancelled", "cancelled")
         return found
 
-    async def _execute(self, number: int, request: StudyRequest, within_s: float) -> None:
+    async def _execute(
+        self, number: int, request: StudyRequest, within_s: float, names: Mapping[str, str]
+    ) -> None:
         try:
             self._records.change(number, state="running")
             tunes = isinstance(request, TuneRequest | AutotuneRequest)
             last_words_s = _TUNED_WITHIN_S if tunes else _LAST_WORDS_S
             async with self._process(number, request, last_words_s) as process:
                 code, reason = await asyncio.wait_for(process.over(), within_s)
-            self._end(number, *(("ended", "") if code == 0 else ("failed", reason)))
+            self._end(number, *(("ended", "") if code == 0 else ("failed", in_plain_words(reason, names))))
         except TimeoutError:
             self._end(number, "failed", f"took more than {within_s:g} s")
         except asyncio.CancelledError:
             self._end(number, "cancelled", "cancelled")
             raise
         except (HilError, OSError) as error:
-            self._end(number, "failed", str(error))
+            self._end(number, "failed", in_plain_words(str(error), names))
 
     def _progress(self, number: int) -> dict[str, Any]:
         del number
         return {}
 
     def _end(self, number: int, state: str, reason: str) -> None:
+        sequence = self._sequences.pop(number, None)
+        if sequence is not None:
+            with contextlib.suppress(OSError):
+                sequence.unlink(missing_ok=True)
         self._change(number, state=state, reason=reason)

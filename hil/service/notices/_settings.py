@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeVar
 from urllib.parse import urlsplit
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from hil.core.errors import BadInputError
+from hil.core.errors.mistakes import keyed, mistakes_of, refuse
 from hil.core.files.toml_file import parse_toml, toml_text
 
 #: `run_failed` is any end but `pass` and `done`; a limit that trips is one of them.
@@ -18,7 +20,17 @@ Event = Literal[
 ]
 EVENTS: tuple[Event, ...] = ("run_failed", "approval_asked", "bench_stopped", "drift")
 
-_Address = Annotated[str, Field(pattern=r"^[^\s@<>,]+@[^\s@<>,]+$", max_length=254)]
+R = TypeVar("R", bound="_Recipient")
+_ADDRESS = re.compile(r"[^\s@<>,]+@[^\s@<>,]+")
+
+
+def _mail_address(text: str) -> str:
+    if not _ADDRESS.fullmatch(text):
+        raise ValueError("must be one address, as name@example.org")
+    return text
+
+
+_Address = Annotated[str, Field(max_length=254), AfterValidator(_mail_address)]
 _FIX = "see docs/how-to/notices.md"
 
 
@@ -39,6 +51,20 @@ class _Recipient(_Table):
         return event in self.events and (not self.benches or bench in self.benches)
 
 
+def _sound(table: R, wrong: list[str]) -> R:
+    if wrong:
+        raise ValueError("; ".join(wrong))
+    return table
+
+
+def _is_address(url: str) -> bool:
+    try:
+        parts = urlsplit(url)
+    except ValueError:
+        return False
+    return parts.scheme in ("http", "https") and bool(parts.hostname)
+
+
 class Webhook(_Recipient):
     """An address that notices are posted to as JSON, signed with the secret in `secret_env`."""
 
@@ -47,12 +73,12 @@ class Webhook(_Recipient):
 
     @model_validator(mode="after")
     def _usable(self) -> Webhook:
-        parts = urlsplit(self.url)
-        if parts.scheme not in ("http", "https") or not parts.hostname:
-            raise ValueError("url must begin with https:// or http:// and name a host")
+        wrong = []
+        if not _is_address(self.url):  # which is not repeated: it may be a secret
+            wrong.append("url must begin with https:// or http:// and name a host")
         if self.secret_env and not os.environ.get(self.secret_env):
-            raise ValueError(f"the environment has no {self.secret_env}")
-        return self
+            wrong.append(f"the environment has no {self.secret_env}")
+        return _sound(self, wrong)
 
     @property
     def name(self) -> str:
@@ -79,13 +105,14 @@ class Mail(_Recipient):
 
     @model_validator(mode="after")
     def _usable(self) -> Mail:
+        wrong = []
         if bool(self.user) != bool(self.password_env):
-            raise ValueError("user and password_env go together")
+            wrong.append("user and password_env go together")
         if self.password_env and not os.environ.get(self.password_env):
-            raise ValueError(f"the environment has no {self.password_env}")
+            wrong.append(f"the environment has no {self.password_env}")
         if self.user and self.security == "none":
-            raise ValueError("a password is not sent without encryption: set security to starttls or tls")
-        return self
+            wrong.append("a password is not sent without encryption: set security to starttls or tls")
+        return _sound(self, wrong)
 
     @property
     def name(self) -> str:
@@ -118,16 +145,15 @@ def read_settings(path: Path) -> NoticeSettings:
     """Read the file.
 
     Raises:
-        BadInputError: it cannot be read, has a key that is not known, or a secret is not in the environment.
+        BadInputError: it cannot be read; or all its mistakes, with their lines.
     """
-    table = parse_toml(toml_text(path), str(path), _FIX)
+    text = toml_text(path, f"give the file of who gets notices: {_FIX}")
+    table = parse_toml(text, str(path), _FIX)
     try:
         found = NoticeSettings.model_validate(table)
     except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(str(part) for part in first["loc"])
-        what = first["msg"].removeprefix("Value error, ")
-        raise BadInputError(f"{place}: {what}" if place else what, where=str(path), fix=_FIX) from error
+        refuse(str(path), [keyed(one) for one in mistakes_of(error, NoticeSettings)], text, _FIX)
+        raise AssertionError("pydantic refused it without a mistake") from error
     if not found.recipients:
         raise BadInputError("has no recipient", where=str(path), fix=f"add [[webhook]] or [[mail]]: {_FIX}")
     return found

@@ -20,6 +20,7 @@ from hil.core.recording import NOT_READ, READ
 from hil.execution.background import apart
 from hil.service.jobs.job_repository import JobRepository, files_in_results
 from hil.service.jobs.shared_results import SharedResults
+from hil.service.plain_words import in_plain_words
 from hil.service.recordings._pieces import add_piece, size_of, take_whole
 from hil.service.recordings._room import Room
 from hil.service.store import in_turns
@@ -236,6 +237,5 @@ def _refuse_other_kinds(name: str) -> None:
 
 def _in_words(error: BadInputError, path: Path, name: str) -> str:
     """The error, in which the file is called as it was given."""
-    where, what, fix = (text.replace(str(path), name) for text in (error.where, error.what, error.fix))
-    text = f"{where}: {what}" if where else what
-    return f"{text}; {fix}" if fix else text
+    text = f"{error.where}: {error.what}" if error.where else error.what
+    return in_plain_words(f"{text}; {error.fix}" if error.fix else text, {str(path): name})

@@ -115,7 +115,7 @@ def read_settings(path: Path) -> SignInSettings:
     Raises:
         BadInputError: it cannot be read; or all its mistakes, with their lines.
     """
-    text = toml_text(path)
+    text = toml_text(path, f"give the file of the sign-in: {_FIX}")
     try:
         return SignInSettings.model_validate(parse_toml(text, str(path), _FIX))
     except ValidationError as error:

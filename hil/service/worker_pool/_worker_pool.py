@@ -11,6 +11,7 @@ from typing import Any
 
 from hil.core.errors import BadInputError, BenchError
 from hil.execution.background import FORECAST_BYTES, start_process
+from hil.service.plain_words import in_plain_words, names_in
 
 _WITHIN_S = 60.0
 #: What an answer begins with; JSON follows.
@@ -69,7 +70,7 @@ class WorkerPool:
                 raise
         if not line:
             raise BenchError("its process ended", where=task, fix="look at the service's log")
-        return _read(line)
+        return _read(line, names_in(asked))
 
     def close(self) -> None:
         """End the process, whatever it does."""
@@ -114,9 +115,11 @@ class WorkerPool:
         return self._process
 
 
-def _read(line: bytes) -> bytes:
+def _read(line: bytes, names: dict[str, str]) -> bytes:
     if line.startswith(ANSWERED):
         return line[len(ANSWERED) :]
     refused = json.loads(line[len(REFUSED) :])
     kind = BadInputError if refused["bad_input"] else BenchError
-    raise kind(refused["what"], where=refused["where"], fix=refused["fix"])
+    parts = (refused[part] for part in ("what", "where", "fix"))
+    what, where, fix = (in_plain_words(part, names, hide_places=False) for part in parts)
+    raise kind(what, where=where, fix=fix)

@@ -32,6 +32,10 @@ def test_the_client_gives_what_the_service_says(service: Served, tmp_path: Path)
     assert client.me().role == "admin"
     assert "acceptance" in {plan.name for plan in client.plans()}
     assert client.give_plan("mine", PLAN).variables["torque_nm"].upper == 200.0
+    newer = PLAN.replace("upper: 400", "upper: 390")
+    assert client.give_plan("mine", newer, instead_of=PLAN).name == "mine"
+    with pytest.raises(RefusedError, match="was saved by local"):
+        client.give_plan("mine", PLAN.replace("upper: 400", "upper: 380"), instead_of=PLAN)
     assert client.lease("sim", 5.0).holder == "local"
     run = client.queue(RunWanted(plan="mine", bench="sim", values={"torque_nm": 90}))
     states = [found.state for found in client.progress(run.id)]
@@ -91,7 +95,7 @@ def test_files_that_a_plan_names_travel_with_it(service: Served, tmp_path: Path)
         (("run", "none"), "there is no plan 'none'"),
         (("run", "acceptance", "--bench", "none"), "there is no bench 'none'"),
         (("run", "acceptance", "--repeat", "2"), "does not go with --server"),
-        (("check", "acceptance"), "a service accepts the commands 'run' and 'campaign'"),
+        (("check", "acceptance"), "a service accepts the commands 'run', 'campaign' and 'list runs'"),
         (("run", "acceptance", "--bench", "../x"), "the service rejects it"),
     ],
 )

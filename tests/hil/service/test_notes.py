@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import unicodedata
+from urllib.parse import quote
+
 import pytest
+from pydantic import TypeAdapter, ValidationError
 from sqlalchemy import Engine, insert
 from sqlalchemy.orm import sessionmaker
 
-from hil.api_schemas.notes import MOST_NOTES, MOST_TAGS
+from hil.api_schemas.notes import MOST_NOTES, MOST_TAGS, Tag
 from hil.api_schemas.run_list import RunsWanted
 from hil.client import Client
 from hil.core.errors import BadInputError
@@ -95,6 +99,9 @@ def test_a_client_adds_both_and_nonsense_is_refused(tokens: tuple[Served, dict[s
     client = Client(service.url, secrets["operator"])
     client.add_note(run, "seen at 12 s")
     client.tag(run, "axle-7")
+    client.tag(run, "試験_２号")
+    assert [one.run.id for one in client.find_runs(RunsWanted(tag=["試験_２号"])).runs] == [run]
+    service.ask("DELETE", f"/api/v1/runs/{run}/tags/{quote('試験_２号')}", token=secrets["operator"])
     found = client.notes(run)
     assert (found.tags, [one.text for one in found.notes]) == (["axle-7"], ["seen at 12 s"])
     assert [one.run.id for one in client.find_runs(RunsWanted(tag=["axle-7"])).runs] == [run]
@@ -106,3 +113,17 @@ def test_a_client_adds_both_and_nonsense_is_refused(tokens: tuple[Served, dict[s
         with pytest.raises(RefusedError) as refused:
             service.ask(method, f"/api/v1{path}", body)
         assert refused.value.status in (404, 422)
+
+
+@pytest.mark.parametrize("tag", ["騒音", "ノイズ", "Geräusch", "шум-2", "é" * 40, "หมี", "a.b:c-d_e"])
+def test_a_tag_has_letters_and_digits_of_any_script(tag: str) -> None:
+    assert TypeAdapter(Tag).validate_python(tag) == tag
+    assert TypeAdapter(Tag).validate_python(unicodedata.normalize("NFD", tag[:3])) == tag[:3]
+
+
+@pytest.mark.parametrize(
+    "tag", ["", "two words", "a/b", "-a", "\u0301a", "a" * 41, "a\n", "😀", "a\u200b", "a,b"]
+)
+def test_what_is_no_word_is_no_tag(tag: str) -> None:
+    with pytest.raises(ValidationError):
+        TypeAdapter(Tag).validate_python(tag)

@@ -67,13 +67,28 @@ def test_a_reservation_has_a_length(begins: float, ends: float) -> None:
     "moment", ["0001-01-01T00:00:00+14:00", "9999-12-31T23:59:59-14:00", "2026-11-28T08:00"]
 )
 def test_a_moment_is_of_our_time_and_has_a_zone(moment: str) -> None:
-    with pytest.raises(ValueError, match="years are|timezone"):
+    with pytest.raises(ValueError, match="more than a day ago|more than a year ahead|timezone"):
         ReservationWanted.model_validate({"begins": moment, "ends": moment, "reason": "x"})
+
+
+@pytest.mark.parametrize("hours", [-25, 367 * 24])
+def test_a_moment_is_near_now(hours: float) -> None:
+    with pytest.raises(ValueError, match="more than a day ago|more than a year ahead"):
+        _wanted(hours, hours + 1)
+
+
+@pytest.mark.parametrize("day", ["1900-01-01", "2999-12-31"])
+def test_a_note_is_of_a_day_near_today(day: str) -> None:
+    with pytest.raises(ValueError, match="before yesterday|more than a year ahead"):
+        HandoverWanted.model_validate({"day": day, "shift": "early", "text": "quiet"})
+    for days in (-1, 0, 365):
+        near = (_now() + datetime.timedelta(days=days)).date()
+        assert HandoverWanted(day=near, shift="early", text="quiet").day == near
 
 
 @pytest.mark.parametrize("text", ["", "   ", "\n", "a\0b"])
 def test_a_note_and_a_reason_say_something(text: str) -> None:
-    day = datetime.date(2026, 11, 28)
+    day = _now().date()
     with pytest.raises(ValueError, match="text"):
         HandoverWanted(day=day, shift="early", text=text)
     with pytest.raises(ValueError, match="reason"):

@@ -4,6 +4,7 @@ import { useEffect, useMemo } from "preact/hooks";
 import { placeOf, placeOfFormer, type Place } from "./addresses.ts";
 import { API } from "./api/client.ts";
 import { t } from "./i18n/text.ts";
+import { mayLeave } from "./leaving.ts";
 import { Store, useStore } from "./store.ts";
 
 const former = placeOfFormer(location.pathname, location.hash);
@@ -12,10 +13,13 @@ if (former) history.replaceState(null, "", former);
 const here = (): string => location.pathname + location.search;
 const address = new Store(here());
 
-addEventListener("popstate", () => { address.value = here(); });
+addEventListener("popstate", () => {
+  if (mayLeave()) address.value = here();
+  else history.pushState(null, "", address.value);
+});
 
 export function go(path: string, replace = false): void {
-  if (path === here()) return;
+  if (path === here() || (!replace && !mayLeave())) return;
   if (replace) history.replaceState(null, "", path); else history.pushState(null, "", path);
   address.value = here();
   if (!replace) scrollTo(0, 0);

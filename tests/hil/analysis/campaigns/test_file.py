@@ -89,7 +89,7 @@ def test_mistakes_are_told_with_line_key_and_what_would_be_right(text, said):
         ("vary: {effect.backlach.half_gap_rad: [1]}", "did you mean 'backlash'?"),
         ("vary: {effect.backlash.half_gap: [1]}", "did you mean 'half_gap_rad'?"),
         ("vary: {effect.backlash.half_gap_rad: [1000]}", "is out of range"),
-        ("vary: {controller.lead_deg: [90]}", "90: give a value from 0 to 85 °"),
+        ("vary: {controller.lead_deg: [90]}", "controller.lead_deg = 90: give a value from 0 to 85 °"),
         ("vary: {controller.lead_deg: [9], controller.notch_hz: [9]}", "exclude each other"),
         ("vary: {plan.torque_nm: [9]}", "plan 'acceptance' has no variable 'torque_nm'"),
     ],

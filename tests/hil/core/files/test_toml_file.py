@@ -52,3 +52,16 @@ def test_what_only_looks_like_one_is_read(text: str) -> None:
 def test_a_plan_that_is_such_a_file_is_refused_as_no_plan() -> None:
     with pytest.raises(BadInputError):
         plan_from_text(f"{BOMB} = 1", "p.yaml", Path())
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("a = 1\nb c\n", "FILE, line 2: not a TOML file: Expected '=' after a key in a key/value pair"),
+        ("a = 1\nb = [1,\n\n", "FILE, line 2: not a TOML file: Invalid value, at the end of the file"),
+    ],
+)
+def test_what_is_no_toml_is_named_with_its_line_once(text: str, words: str) -> None:
+    with pytest.raises(BadInputError) as refused:
+        parse_toml(text, "FILE")
+    assert str(refused.value) == words

@@ -118,7 +118,7 @@ CHANNEL = 'channel = "can0"'
         ("channel = 1.5", "line 8: buses.rmcu.channel = 1.5: is not a channel"),
         ('channel = ""', "line 8: buses.rmcu.channel = '': is not a channel"),
         ("channel = 256", "line 8: buses.rmcu.channel = 256: is not a channel; channels are numbered"),
-        (f"{CHANNEL}\ntiming = {{ f_clock = 8000000 }}", "line 9: buses.rmcu.timing = a table: is empty"),
+        (f"{CHANNEL}\ntiming = {{ f_clock = 8000000 }}", "line 9: buses.rmcu.timing: is empty"),
         (f"{CHANNEL}\ntiming = {{ f_clock = 8000000, tseg1 = 5 }}", "give tseg1, tseg2 and sjw together"),
     ],
 )  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -171,9 +172,20 @@ def test_a_given_simulated_bench_is_served_and_is_there_after_a_kill(tmp_path: P
         assert service.get("/benches/mine")["state"] == "emergency_stop"  # latched beyond its service
         service.post("/benches/mine/reset")
         waiting = service.queue("short", bench="mine")
-        with pytest.raises(RefusedError, match="runs wait or are under way"):
+        with pytest.raises(RefusedError, match=rf"stays in service: run {waiting} \(short, of local\)"):
             service.ask("DELETE", "/api/v1/bench-files/mine/service")
         service.over(waiting)
+        now = datetime.datetime.now(datetime.UTC).replace(microsecond=0)
+        span = {"begins": now.isoformat(), "ends": (now + datetime.timedelta(hours=1)).isoformat()}
+        held = service.post("/benches/mine/reservations", {**span, "reason": "endurance"})
+        with pytest.raises(RefusedError, match="local has reserved it from .* UTC: endurance"):
+            service.ask("DELETE", "/api/v1/bench-files/mine/service")
+        assert "mine" in {one["name"] for one in service.get("/benches")}
+        service.ask("DELETE", f"/api/v1/benches/mine/reservations/{held['id']}")
+        service.ask("PUT", "/api/v1/benches/mine/lease", {"for_s": 60})
+        with pytest.raises(RefusedError, match="local has it until"):
+            service.ask("DELETE", "/api/v1/bench-files/mine/service")
+        service.ask("DELETE", "/api/v1/benches/mine/lease")
         assert not service.ask("DELETE", "/api/v1/bench-files/mine/service")["served"]
         assert "mine" not in {one["name"] for one in service.get("/benches")}
         assert service.get(f"/runs/{run}")["state"] == "ended"

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { dayOf, fieldOf, momentOf, nextHour, shiftAt } from "../../../../hil/service/frontend/src/views/team/local-times.ts";
+import { dayOf, fieldOf, momentOf, nextHour, shiftAt, spanProblem } from "../../../../hil/service/frontend/src/views/team/local-times.ts";
 
 test("a moment goes into a field and comes back with its zone", () => {
   const at = new Date(2026, 2, 5, 7, 4);
@@ -20,4 +20,14 @@ test("the next hour is whole, also of the next day", () => {
 test("a shift is guessed by the hour", () => {
   const shifts = [5, 6, 13, 14, 21, 22].map((hour) => shiftAt(new Date(2026, 0, 1, hour)));
   assert.deepEqual(shifts, ["night", "early", "early", "late", "late", "night"]);
+});
+
+test("what is wrong with the times of a reservation is said by the names of their fields", () => {
+  const now = new Date(2026, 2, 5, 12, 0);
+  assert.equal(spanProblem("2026-03-05T13:00", "2026-03-05T14:00", now), "");
+  assert.equal(spanProblem("", "2026-03-05T14:00", now), "");
+  assert.match(spanProblem("2026-03-05T13:00", "2026-03-05T13:00", now), /“To” must be later than “From”/);
+  assert.match(spanProblem("1900-03-05T13:00", "2026-03-05T13:00", now), /“From” is more than a day ago/);
+  assert.match(spanProblem("2026-03-05T13:00", "2999-03-05T13:00", now), /“To” is more than a year ahead/);
+  assert.match(spanProblem("2026-03-05T13:00", "2026-04-06T13:00", now), /31 days/);
 });

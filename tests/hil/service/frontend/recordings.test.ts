@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
 import test from "node:test";
 import { Sha256, sha256Of } from "../../../../hil/service/frontend/src/api/sha256.ts";
-import { columnsFrom, nameFor } from "../../../../hil/service/frontend/src/views/recordings/send-recording.ts";
+import { columnsFrom, nameFor, sendRecording } from "../../../../hil/service/frontend/src/views/recordings/send-recording.ts";
 
 const numbers = (count: number): Uint8Array => Uint8Array.from({ length: count }, (_, at) => (at * 131 + (at >> 7)) % 256);
 const expected = (data: Uint8Array): string => createHash("sha256").update(data).digest("hex");
@@ -33,4 +33,9 @@ test("a file's name becomes one that the service takes, with its ending", () => 
 
 test("columns stand one a line", () => {
   assert.deepEqual(columnsFrom(" time_s=t, unit=ms \n\nmotor_speed_rad_s=n_EM\n"), ["time_s=t, unit=ms", "motor_speed_rad_s=n_EM"]);
+});
+
+test("an empty file is refused by its name before it is sent", async () => {
+  const sending = { file: new File([], "drive.csv"), columns: [], me: "anna", signal: new AbortController().signal, onShare: () => {} };
+  await assert.rejects(sendRecording(sending), /The file drive\.csv is empty/);
 });

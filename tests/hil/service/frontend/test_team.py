@@ -85,8 +85,9 @@ def test_whoever_has_the_bench_lets_a_run_start(page: playwright.Page, there: Se
 
 
 def test_the_panel_shows_the_newest_note(page: playwright.Page, there: Served) -> None:
-    there.post("/benches/sim/handovers", {"day": "2026-11-28", "shift": "early", "text": "all quiet"})
-    there.post("/benches/sim/handovers", {"day": "2026-11-28", "shift": "late", "text": "sensor drifts"})
+    today = f"{datetime.date.today()}"
+    there.post("/benches/sim/handovers", {"day": today, "shift": "early", "text": "all quiet"})
+    there.post("/benches/sim/handovers", {"day": today, "shift": "late", "text": "sensor drifts"})
     _enter(page, there, there.token)
     page.get_by_text("Earlier notes").click()
     expect(region(page, "Hand-over")).to_contain_text("all quiet")

@@ -85,5 +85,8 @@ def test_a_run_is_tagged_noted_and_found(page: playwright.Page, there: Served) -
     page.once("dialog", lambda dialog: dialog.accept())
     notes.get_by_role("button", name="Remove").click()
     expect(notes.get_by_role("article")).to_have_count(0)
+    notes.get_by_role("combobox", name="Tag").fill("騒音_2")
+    notes.get_by_role("button", name="Add", exact=True).click()
+    expect(notes.get_by_role("link", name="騒音_2")).to_be_visible()
     notes.get_by_role("button", name="Take the tag axle-7 off").click()
     expect(notes.get_by_role("link", name="axle-7")).to_have_count(0)

@@ -12,7 +12,7 @@ import pytest
 from hil.api_schemas.api import RunWanted
 from hil.api_schemas.study import STUDY_OVER, DiagnosisWanted, IdentificationWanted, StudyData
 from hil.client import Client, RefusedError
-from tests.hil.service.served import Served, served
+from tests.hil.service.served import SHORT, Served, served
 
 #: A chirp of some seconds: enough for a fit, not for a good one.
 CHIRP = """
@@ -121,6 +121,20 @@ def test_what_cannot_be_studied_is_said(there: tuple[Served, int]) -> None:
     assert (study.state, "twice" in study.reason or "same" in study.reason) == ("failed", True), study.reason
     with pytest.raises(RefusedError, match="has no result"):
         client.identification(study.id)
+    assert f"the recording of run {run}" in study.reason
+
+
+def test_a_refusal_names_runs_and_no_places_of_the_machine(there: tuple[Served, int]) -> None:
+    service, _ = there
+    client = Client(service.url)
+    service.give("short", SHORT)
+    short = service.queue("short")
+    assert service.over(short)["state"] == "ended"
+    study = over(client, client.identify(IdentificationWanted(runs=[short])))
+    assert study.state == "failed"
+    assert f"the recording of run {short}" in study.reason
+    assert str(service.data) not in study.reason
+    assert "--segment" not in study.reason or "options with --" in study.reason
 
 
 def test_a_service_that_is_killed_leaves_an_interrupted_study(tmp_path: Path) -> None:

@@ -48,10 +48,10 @@ def test_a_recipient_gets_what_it_asks_for(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (("https://chat.example.org/hook/1", "chat.example.org"), "webhook.0: url must begin with"),
-        (("run_ended", "run_done"), "webhook.0.events.0"),
-        (("sender =", "from ="), "mail.0.sender"),
-        (("lab@example.org", "lab"), "mail.0.to.0"),
+        (("https://chat.example.org/hook/1", "chat.example.org"), "line 4: webhook[1]: url must begin with"),
+        (("run_ended", "run_done"), "line 6: webhook[1].events[1] = 'run_done': must be"),
+        (("sender =", "from ="), "mail[1].sender: is missing"),
+        (("lab@example.org", "lab"), "line 12: mail[1].to[1] = 'lab'"),
         (('host = "mail', 'user = "u"\nhost = "mail'), "user and password_env go together"),
         (
             ('host = "mail', 'user = "u"\npassword_env = "HOME"\nsecurity = "none"\nhost = "mail'),
@@ -66,6 +66,29 @@ def test_a_mistake_is_named_with_its_place(tmp_path: Path, change: tuple[str, st
         _read(tmp_path, _GOOD.replace(*change))
     assert words in str(refused.value)
     assert "docs/how-to/notices.md" in str(refused.value)
+
+
+def test_all_mistakes_are_named_each_at_its_line(tmp_path: Path) -> None:
+    text = _GOOD.replace("run_ended", "run_done").replace("host =", "hosts =").replace("lab@", "lab.")
+    second = '\n[[webhook]]\nurl = "ftp://hidden/secret"\nsecret_env = "NO_SUCH_SECRET"\n'
+    with pytest.raises(BadInputError) as refused:
+        _read(tmp_path, text + second)
+    words = str(refused.value)
+    for one in (
+        "4 mistakes",
+        "line 6: webhook[1].events[1] = 'run_done': must be",
+        "line 10: mail[1].hosts: unknown key; did you mean 'host'?",
+        "line 12: mail[1].to[1] = 'lab.example.org': must be one address, as name@example.org",
+        "line 14: webhook[2]: url must begin with https:// or http:// and name a host; the environment has",
+    ):
+        assert one in words
+    assert "secret'" not in words
+
+
+def test_a_file_that_is_not_there_is_asked_for_by_what_it_holds(tmp_path: Path) -> None:
+    with pytest.raises(BadInputError) as refused:
+        read_settings(tmp_path / "none.toml")
+    assert refused.value.fix.startswith("give the file of who gets notices")
 
 
 @given(st.text(max_size=200))

@@ -25,8 +25,13 @@ function typeOf(body: object | string): string {
   return typeof body === "string" ? "text/plain" : body instanceof Uint8Array ? "application/octet-stream" : "application/json";
 }
 
+interface Answered {
+  text: string;
+  tag: string; // its ETag; '' without one
+}
+
 // A text, bytes or a file are sent as they are, anything else as JSON.
-async function fetched(method: string, path: string, body: Body, signal?: AbortSignal): Promise<string> {
+async function fetched(method: string, path: string, body: Body, signal?: AbortSignal): Promise<Answered> {
   const options: RequestInit = { method, headers: {}, signal: signal ?? null };
   if (body !== undefined) {
     const asItIs = typeof body === "string" || body instanceof Uint8Array || body instanceof Blob;
@@ -44,7 +49,7 @@ async function fetched(method: string, path: string, body: Body, signal?: AbortS
   noteAnswer();
   noteDate(answer.headers.get("date"));
   const text = await answer.text();
-  if (answer.ok) return text;
+  if (answer.ok) return { text, tag: (answer.headers.get("etag") ?? "").replace(/^(?:W\/)?"|"$/g, "") };
   throw new Refused(answer.status, problemOf(answer.status, text));
 }
 
@@ -57,13 +62,15 @@ function problemOf(status: number, text: string): Problem {
 }
 
 export async function ask<T>(method: string, path: string, body?: Body, signal?: AbortSignal): Promise<T> {
-  const text = await fetched(method, path, body, signal);
+  const { text } = await fetched(method, path, body, signal);
   return (text ? JSON.parse(text) : null) as T;
 }
 
 export const get = <T>(path: string, signal?: AbortSignal): Promise<T> => ask<T>("GET", path, undefined, signal);
 export const post = <T>(path: string, body?: object): Promise<T> => ask<T>("POST", path, body);
-export const getText = (path: string, signal?: AbortSignal): Promise<string> => fetched("GET", path, undefined, signal);
+export const getText = async (path: string, signal?: AbortSignal): Promise<string> => (await fetched("GET", path, undefined, signal)).text;
+// With what a newer text names it by that replaces it.
+export const getTagged = (path: string, signal?: AbortSignal): Promise<Answered> => fetched("GET", path, undefined, signal);
 export const fileUrl = (run: number, name: string): string => `${API}/runs/${run}/files/${encodeURIComponent(name)}`;
 
 const STOP_MS = 30_000;

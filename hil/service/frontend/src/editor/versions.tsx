@@ -49,10 +49,14 @@ function Differences({ before, after }: { before: string; after: string }): JSX.
   }, [before, after]);
   if (!texts) return <p class="quiet">{t("Loading the texts …")}</p>;
   if (texts[0] === texts[1]) return <p class="quiet">{t("It is today's text.")}</p>;
+  return <Difference before={texts[0]} after={texts[1]} label={t("Differences, from that version to today's text")} />;
+}
+
+export function Difference({ before, after, label }: { before: string; after: string; label: string }): JSX.Element {
   const marks = { same: " ", gone: "−", new: "+", "left out": "…" };
   return (
-    <pre class="diff" tabIndex={0} role="region" aria-label={t("Differences, from that version to today's text")}>
-      {diffOf(...texts).map((line, at) => <span key={at} class={line.kind.replace(" ", "-")}>{`${marks[line.kind]} ${line.kind === "left out" ? tn("{count} line is the same", "{count} lines are the same", Number(line.text)) : line.text}\n`}</span>)}
+    <pre class="diff" tabIndex={0} role="region" aria-label={label}>
+      {diffOf(before, after).map((line, at) => <span key={at} class={line.kind.replace(" ", "-")}>{`${marks[line.kind]} ${line.kind === "left out" ? tn("{count} line is the same", "{count} lines are the same", Number(line.text)) : line.text}\n`}</span>)}
     </pre>
   );
 }

@@ -1,11 +1,12 @@
 // A campaign is begun: by a form, or by a text as `hil campaign` takes it, an example or a file of one's own.
 
 import type { JSX } from "preact";
-import { useEffect, useState } from "preact/hooks";
 import { post } from "../../api/client.ts";
 import type { Campaign, CampaignExample } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
+import { DraftNotice } from "../../editor/draft-notice.tsx";
+import { useDraft } from "../../editor/use-draft.ts";
 import { t } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { CampaignForm } from "./form-fields.tsx";
@@ -13,23 +14,36 @@ import { campaignText, NOTHING, type Chosen, type Property } from "./campaign-fo
 
 const FORM = "form", OWN = "own file";
 
+interface Typed {
+  from: string;
+  typed: string; // what is not made by the form
+  given: string; // as the example had it
+  chosen: Chosen; // in the form
+  beside: Record<string, string>; // texts of files by their names
+}
+
+const START: Typed = { from: FORM, typed: "", given: "", chosen: NOTHING, beside: {} };
+const isNothing = (chosen: Chosen): boolean => JSON.stringify(chosen) === JSON.stringify(NOTHING);
+
 export function BeginCampaign(): JSX.Element {
   const examples = useData<CampaignExample[]>("/campaign-examples").data ?? [], schema = useData<Property>("/schemas/campaign").data;
-  const [from, setFrom] = useState(FORM), [text, setText] = useState(""), [chosen, setChosen] = useState<Chosen>(NOTHING);
-  const [beside, setBeside] = useState<Record<string, string>>({});
-  const byForm = from === FORM;
-  useEffect(() => { if (byForm && schema) setText(campaignText(schema, chosen)); }, [byForm, schema, chosen]);
+  const draft = useDraft<Typed>("campaign", START, ({ typed, given, chosen }) => typed === given && isNothing(chosen)), { from, chosen, beside } = draft.value;
+  const byForm = from === FORM, text = byForm ? (schema ? campaignText(schema, chosen) : "") : draft.value.typed;
+  const change = (changed: Partial<Typed>) => draft.set({ ...draft.value, ...changed });
   const choose = (name: string) => {
-    setFrom(name);
-    setText(examples.find((one) => one.name === name)?.text ?? "");
+    const given = examples.find((one) => one.name === name)?.text ?? "";
+    change({ from: name, typed: given, given });
   };
   const begin = async (event: Event) => {
     event.preventDefault();
     const campaign = await attempt(() => post<Campaign>("/campaigns", { text, files: from === OWN ? beside : {} }));
-    if (campaign) go(to.campaign(campaign.id));
+    if (!campaign) return;
+    draft.saved();
+    go(to.campaign(campaign.id));
   };
   return (
     <form class="card" onSubmit={(event) => void begin(event)}>
+      <DraftNotice of={draft} />
       <label class="field">{t("Campaign")}
         <select value={from} onChange={(event) => choose(event.currentTarget.value)}>
           <option value={FORM}>{t("by this form")}</option>
@@ -37,9 +51,9 @@ export function BeginCampaign(): JSX.Element {
           <option value={OWN}>{t("a file of your own")}</option>
         </select>
       </label>
-      {byForm && schema ? <CampaignForm schema={schema} chosen={chosen} onChange={setChosen} /> : null}
-      {from === OWN ? <OwnFiles onText={setText} onBeside={setBeside} /> : null}
-      <label class="field">{t("Content")}<textarea rows={byForm ? 6 : 14} spellcheck={false} required maxLength={200_000} readOnly={byForm} value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
+      {byForm && schema ? <CampaignForm schema={schema} chosen={chosen} onChange={(chosen) => change({ chosen })} /> : null}
+      {from === OWN ? <OwnFiles onText={(typed) => change({ typed })} onBeside={(beside) => change({ beside })} /> : null}
+      <label class="field">{t("Content")}<textarea rows={byForm ? 6 : 14} spellcheck={false} required maxLength={200_000} readOnly={byForm} value={text} onInput={(event) => change({ typed: event.currentTarget.value })} /></label>
       <button type="submit" class="main">{t("Simulate")}</button>
     </form>
   );

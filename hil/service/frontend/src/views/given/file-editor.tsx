@@ -5,8 +5,11 @@ import { useEffect, useState } from "preact/hooks";
 import { ask, getText } from "../../api/client.ts";
 import type { FileCheck, Model } from "../../api/types.ts";
 import { attempt, useData } from "../../data.ts";
+import { Conflict, saved, theirsOf, type Theirs } from "../../editor/conflict.tsx";
+import { DraftNotice } from "../../editor/draft-notice.tsx";
 import { TextEditor } from "../../editor/text-editor.tsx";
 import { useCheck } from "../../editor/use-check.ts";
+import { useDraft } from "../../editor/use-draft.ts";
 import { ValuesForm } from "../../editor/values-form.tsx";
 import { figure, wordsOf } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
@@ -19,39 +22,63 @@ import { kindOf, nextName, type GivenKind } from "./kinds.ts";
 interface Options {
   kind: GivenKind;
   text: string;
+  item: string; // under which it is kept while it is not saved
   basedOn?: string;
 }
 
-export function FileEditor({ kind, text: given, basedOn = "" }: Options): JSX.Element {
-  const of = kindOf(kind), taken = (useData<{ name: string }[]>(of.path).data ?? []).map((one) => one.name);
-  const [text, setText] = useState(given), [chosen, setName] = useState<string | null>(null), [model, setModel] = useState("");
+interface Written {
+  text: string;
+  chosen: string | null; // as its name
+}
+
+export function FileEditor({ kind, text: given, item, basedOn = "" }: Options): JSX.Element {
+  const of = kindOf(kind), all = useData<{ name: string }[]>(of.path), taken = (all.data ?? []).map((one) => one.name);
+  const draft = useDraft<Written>(item, { text: given, chosen: null }, (one) => one.text === given), { text, chosen } = draft.value;
+  const [model, setModel] = useState(""), [theirs, setTheirs] = useState<Theirs | null>(null);
+  const setText = (typed: string) => draft.set({ text: typed, chosen }), setName = (name: string) => draft.set({ text, chosen: name });
   const inText = kind === "bench" ? benchName(text) : null, name = inText ?? chosen ?? (basedOn ? nextName(basedOn, taken) : ""), isName = /^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$/.test(name);
   const checked = useCheck<FileCheck>("/file-checks", { kind, name: isName ? name : "unnamed", text, ...(model ? { model } : {}) });
   const check = checked.text === text ? checked.check : null;
-  const keep = async () => {
-    const from = basedOn ? `?based_on=${encodeURIComponent(basedOn)}` : "";
-    if (await attempt(async () => { await ask("PUT", `${of.path}/${encodeURIComponent(name)}${from}`, text); return true; })) go(of.address(name));
+  const keep = (text: string, name: string) => attempt(async () => {
+    const path = `${of.path}/${encodeURIComponent(name)}`, from = basedOn ? `?based_on=${encodeURIComponent(basedOn)}` : "";
+    const there = await saved(() => ask("PUT", `${path}${from}`, text), () => theirsOf(kind, name, `${path}/text`));
+    setTheirs(there);
+    if (there) { all.again(); return; }
+    draft.saved();
+    go(of.address(name));
+  });
+  const next = nextName(theirs?.name ?? "", taken), keepMine = () => void keep(inText === null ? text : named(text, next), next);
+  const take = () => {
+    if (theirs === null || !confirm(t("Discard what you typed? It cannot be brought back."))) return;
+    draft.saved();
+    go(of.address(theirs.name));
   };
   const missing = !name ? t("It has no name yet.") : !isName ? t("A name has letters, digits, _ and -.") : taken.includes(name) ? t("{name} is there already, and stays what it is: choose another name.", { name }) : "";
   return (
-    <div class="columns">
-      <div>
-        {inText === null ? <NameField label={t("Name")} value={name} onChange={setName} /> : null}
-        <TextEditor label={of.label} kind="toml" schema={kind} text={text} onText={setText} checked={checked} keep={{ name: isName ? t("Keep as {name}", { name }) : t("Keep it"), missing, do: () => void keep() }} />
+    <>
+      <DraftNotice of={draft} />
+      {theirs ? <Conflict theirs={theirs} mine={text} keep={{ name: t("Keep mine as {name}", { name: next }), do: keepMine }} take={take} /> : null}
+      <div class="columns">
+        <div>
+          {inText === null ? <NameField label={t("Name")} value={name} onChange={setName} /> : null}
+          <TextEditor label={of.label} kind="toml" schema={kind} text={text} onText={setText} checked={checked} keep={{ name: isName ? t("Keep as {name}", { name }) : t("Keep it"), missing, do: () => void keep(text, name) }} />
+        </div>
+        <div>
+          <Section title={t("What follows from it")} label="figures">
+            {kind === "controller" ? <ChooseModel value={model} onChange={setModel} /> : null}
+            <div aria-live="polite">{check && !check.mistakes.length ? <Figures of={check} /> : <p class="quiet">{t("It is computed when no mistake is left.")}</p>}</div>
+          </Section>
+          <ValuesForm schema={kind} text={text} onText={setText} />
+        </div>
       </div>
-      <div>
-        <Section title={t("What follows from it")} label="figures">
-          {kind === "controller" ? <ChooseModel value={model} onChange={setModel} /> : null}
-          <div aria-live="polite">{check && !check.mistakes.length ? <Figures of={check} /> : <p class="quiet">{t("It is computed when no mistake is left.")}</p>}</div>
-        </Section>
-        <ValuesForm schema={kind} text={text} onText={setText} />
-      </div>
-    </div>
+    </>
   );
 }
 
 // A bench says its name itself, as a plan does.
-const benchName = (text: string): string => /^name\s*=\s*"([^"]*)"/m.exec(text)?.[1] ?? "";
+const BENCH_NAME = /^name\s*=\s*"([^"]*)"/m;
+const benchName = (text: string): string => BENCH_NAME.exec(text)?.[1] ?? "";
+const named = (text: string, name: string): string => text.replace(BENCH_NAME, `name = "${name}"`);
 
 function ChooseModel({ value, onChange }: { value: string; onChange: (model: string) => void }): JSX.Element {
   const models = useData<Model[]>("/models").data ?? [];
@@ -71,14 +98,14 @@ function Figures({ of }: { of: FileCheck }): JSX.Element {
 }
 
 // The editor of a text that there is: today's, or that of a version.
-export function EditFile({ kind, name, path }: { kind: GivenKind; name: string; path: string }): JSX.Element {
+export function EditFile({ kind, name, path, item }: { kind: GivenKind; name: string; path: string; item: string }): JSX.Element {
   const [text, setText] = useState<string | null>(null);
   useEffect(() => {
     const control = new AbortController();
     void attempt(async () => setText(await getText(path, control.signal)));
     return () => control.abort();
   }, [path]);
-  return text === null ? <p class="quiet">{t("Loading the text …")}</p> : <FileEditor kind={kind} text={text} basedOn={name} />;
+  return text === null ? <p class="quiet">{t("Loading the text …")}</p> : <FileEditor kind={kind} text={text} item={item} basedOn={name} />;
 }
 
 export function useWritten(): { isNew: boolean; isOn: boolean; version: number | null } {

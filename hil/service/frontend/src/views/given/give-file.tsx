@@ -4,34 +4,47 @@ import type { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { ask } from "../../api/client.ts";
 import { attempt } from "../../data.ts";
+import { Conflict, saved, theirsOf, type Theirs } from "../../editor/conflict.tsx";
+import { DraftNotice } from "../../editor/draft-notice.tsx";
+import { useDraft } from "../../editor/use-draft.ts";
+import type { VersionedKind } from "../../editor/versions.tsx";
 import { t } from "../../i18n/text.ts";
 
 interface Options {
+  kind: VersionedKind;
   submit: string; // what the button is called
   path: string;
   ending: string;
   onGiven: (name: string) => void;
 }
 
-export function GiveFile({ submit, path, ending, onGiven }: Options): JSX.Element {
-  const [name, setName] = useState(""), [text, setText] = useState("");
+export function GiveFile({ kind, submit, path, ending, onGiven }: Options): JSX.Element {
+  const draft = useDraft(`give/${kind}`, { name: "", text: "" }, (one) => one.text === ""), { name, text } = draft.value;
+  const [theirs, setTheirs] = useState<Theirs | null>(null);
   const take = async (file: File | undefined) => {
     if (!file) return;
-    setText(await file.text());
-    if (!name) setName(file.name.replace(/\.[^.]+$/, "").replace(/[^A-Za-z0-9_.-]/g, "-"));
+    draft.set({ text: await file.text(), name: name || file.name.replace(/\.[^.]+$/, "").replace(/[^A-Za-z0-9_.-]/g, "-") });
   };
-  const give = async (event: Event) => {
-    event.preventDefault();
-    if (await attempt(async () => { await ask("PUT", `${path}/${encodeURIComponent(name)}`, text); return true; })) onGiven(name);
-  };
+  const give = (insteadOf: string) => attempt(async () => {
+    const file = `${path}/${encodeURIComponent(name)}`;
+    // A plan may be replaced by who has seen it; of the others a name stays what it is.
+    const there = kind === "plan" ? await saved(() => ask("PUT", `${file}?instead_of=${insteadOf}`, text), () => theirsOf(kind, name, `${file}/text`)) : await ask<null>("PUT", file, text).then(() => null);
+    setTheirs(there);
+    if (there) return;
+    draft.saved();
+    onGiven(name);
+  });
+  const seen = (there: Theirs) => { draft.saved(); onGiven(there.name); };
   return (
-    <form onSubmit={(event) => void give(event)}>
+    <form onSubmit={(event) => { event.preventDefault(); void give(""); }}>
+      <DraftNotice of={draft} />
+      {theirs ? <Conflict theirs={theirs} mine={text} keep={{ name: t("Keep mine as the newer version"), do: () => void give(theirs.tag) }} take={() => seen(theirs)} /> : null}
       <div class="row">
         <label class="field">{t("File ({ending})", { ending })}<input type="file" accept={`${ending},text/plain`} onChange={(event) => void take(event.currentTarget.files?.[0])} /></label>
-        <label class="field">{t("Name")}<input required maxLength={64} pattern="[A-Za-z0-9][A-Za-z0-9_.\-]*" autocomplete="off" value={name} onInput={(event) => setName(event.currentTarget.value)} /></label>
+        <label class="field">{t("Name")}<input required maxLength={64} pattern="[A-Za-z0-9][A-Za-z0-9_.\-]*" autocomplete="off" value={name} onInput={(event) => draft.set({ text, name: event.currentTarget.value })} /></label>
         <button type="submit" class="main" disabled={!name || !text}>{submit}</button>
       </div>
-      <label class="field">{t("Text")}<textarea rows={6} spellcheck={false} value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
+      <label class="field">{t("Text")}<textarea rows={6} spellcheck={false} value={text} onInput={(event) => draft.set({ name, text: event.currentTarget.value })} /></label>
     </form>
   );
 }

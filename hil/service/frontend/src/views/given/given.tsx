@@ -5,6 +5,7 @@ import { ask } from "../../api/client.ts";
 import type { BenchFile, Controller, Model } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
+import { itemOf } from "../../editor/drafts.ts";
 import { Versions, versionPath } from "../../editor/versions.tsx";
 import { English } from "../../i18n/english.tsx";
 import { t } from "../../i18n/text.ts";
@@ -70,14 +71,14 @@ export function BenchFiles(): JSX.Element {
 // A list with what engineers may add to it.
 function List({ kind, title, also, children }: { kind: GivenKind; title: string; also: JSX.Element; children: ComponentChildren }): JSX.Element {
   const of = kindOf(kind), may = useMay(), { isNew } = useWritten();
-  if (isNew && may("engineer")) return <><Heading kind={<a href={to.list(of.list)}>{title}</a>}>{of.write}</Heading><FileEditor kind={kind} text={of.start} /></>;
+  if (isNew && may("engineer")) return <><Heading kind={<a href={to.list(of.list)}>{title}</a>}>{of.write}</Heading><FileEditor kind={kind} text={of.start} item={kind} /></>;
   const give = { model: t("Give a model"), controller: t("Give a controller"), bench: t("Give a bench file") }[kind];
   return (
     <>
       <Heading>{title}</Heading>
       {children}
       {may("engineer") ? <p class="links"><a href={`${to.list(of.list)}?write=new`}>{of.write}</a> {also}</p> : null}
-      {may("engineer") ? <Section title={give} label="give"><GiveFile submit={give} path={of.path} ending=".toml" onGiven={(name) => go(of.address(name))} /></Section> : null}
+      {may("engineer") ? <Section title={give} label="give"><GiveFile kind={kind} submit={give} path={of.path} ending=".toml" onGiven={(name) => go(of.address(name))} /></Section> : null}
     </>
   );
 }
@@ -128,7 +129,7 @@ function Given({ name, kind }: { name: string; kind: GivenKind }): JSX.Element {
     if (!confirm(t("Remove {name}? Its versions stay.", { name }))) return;
     if (await attempt(async () => { await ask("DELETE", `${of.path}/${encodeURIComponent(name)}`); return true; })) go(to.list(of.list));
   };
-  if (isOn && may("engineer")) return <><Heading kind={<a href={of.address(name)}>{name}</a>}>{of.edit}</Heading><EditFile kind={kind} name={name} path={version === null ? textPath : versionPath(kind, name, version)} /></>;
+  if (isOn && may("engineer")) return <><Heading kind={<a href={of.address(name)}>{name}</a>}>{of.edit}</Heading><EditFile key={itemOf(kind, name, version)} kind={kind} name={name} path={version === null ? textPath : versionPath(kind, name, version)} item={itemOf(kind, name, version)} /></>;
   const heading = {
     model: [t("Model"), t("Shipped model"), t("Given model")], controller: [t("Controller"), t("Shipped controller"), t("Given controller")], bench: [t("Bench file"), t("Shipped bench file"), t("Given bench file")],
   }[kind][found ? (found.built_in ? 1 : 2) : 0];

@@ -6,6 +6,7 @@ import { ask, getText } from "../../api/client.ts";
 import type { Plan } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
+import { itemOf } from "../../editor/drafts.ts";
 import { Versions, versionPath } from "../../editor/versions.tsx";
 import { limitText } from "../../format.ts";
 import { t } from "../../i18n/text.ts";
@@ -23,7 +24,7 @@ import { Pictures } from "./pictures.tsx";
 export function Plans(): JSX.Element {
   const plans = useData<Plan[]>("/plans"), [query] = useQuery();
   const may = useMay();
-  if (query.get("write") === "new" && may("engineer")) return <><Heading kind={<a href={to.list("plans")}>{t("Plans")}</a>}>{t("Write a plan")}</Heading><PlanEditor text={START} builtIn={false} /></>;
+  if (query.get("write") === "new" && may("engineer")) return <><Heading kind={<a href={to.list("plans")}>{t("Plans")}</a>}>{t("Write a plan")}</Heading><PlanEditor text={START} tag="" item="plan" builtIn={false} /></>;
   return (
     <>
       <Heading>{t("Plans")}</Heading>
@@ -44,7 +45,7 @@ export function Plans(): JSX.Element {
         )}
       </Loaded>
       {may("engineer") ? <p><a href={`${to.list("plans")}?write=new`}>{t("Write a plan")}</a></p> : null}
-      {may("engineer") ? <Section title={t("Give a plan")} label="give"><GiveFile submit={t("Give the plan")} path="/plans" ending=".yaml" onGiven={(name) => go(to.plan(name))} /></Section> : null}
+      {may("engineer") ? <Section title={t("Give a plan")} label="give"><GiveFile kind="plan" submit={t("Give the plan")} path="/plans" ending=".yaml" onGiven={(name) => go(to.plan(name))} /></Section> : null}
       {may("engineer") ? <Section title={t("Pictures for questions")} label="pictures"><Pictures /></Section> : null}
     </>
   );
@@ -52,10 +53,10 @@ export function Plans(): JSX.Element {
 
 export function PlanView({ name }: { name: string }): JSX.Element {
   const plan = useData<Plan>(`/plans/${encodeURIComponent(name)}`);
-  return <Loaded of={plan} what={t("plan {name}", { name })}>{(found) => <Found plan={found} />}</Loaded>;
+  return <Loaded of={plan} what={t("plan {name}", { name })}>{(found) => <Found plan={found} onSaved={plan.again} />}</Loaded>;
 }
 
-function Found({ plan }: { plan: Plan }): JSX.Element {
+function Found({ plan, onSaved }: { plan: Plan; onSaved: () => void }): JSX.Element {
   const may = useMay(), [query] = useQuery(), textPath = `/plans/${encodeURIComponent(plan.name)}/text`, version = Number(query.get("version")) || null;
   const remove = async () => {
     if (!confirm(t("Remove the plan {name}? Its runs stay.", { name: plan.name }))) return;
@@ -63,7 +64,7 @@ function Found({ plan }: { plan: Plan }): JSX.Element {
   };
   const variables = Object.entries(plan.variables);
   const edited = (text: string) => (plan.built_in ? renamed(text, `${plan.name}_copy`) : text);
-  if (query.get("write") === "on" && may("engineer")) return <><Heading kind={<a href={to.plan(plan.name)}>{plan.name}</a>}>{plan.built_in ? t("A copy of this plan") : t("Edit the plan")}</Heading><EditPlan name={plan.name} path={version === null ? textPath : versionPath("plan", plan.name, version)} builtIn={plan.built_in} copied={edited} /></>;
+  if (query.get("write") === "on" && may("engineer")) return <><Heading kind={<a href={to.plan(plan.name)}>{plan.name}</a>}>{plan.built_in ? t("A copy of this plan") : t("Edit the plan")}</Heading><EditPlan key={itemOf("plan", plan.name, version)} name={plan.name} path={version === null ? textPath : versionPath("plan", plan.name, version)} item={itemOf("plan", plan.name, version)} builtIn={plan.built_in} copied={edited} onSaved={onSaved} /></>;
   return (
     <>
       <Heading kind={plan.built_in ? t("Built-in plan {name}", { name: plan.name }) : t("Given plan {name}", { name: plan.name })}>{plan.title || plan.name}</Heading>

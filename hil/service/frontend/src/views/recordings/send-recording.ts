@@ -26,6 +26,7 @@ export interface Sending {
 }
 
 export async function sendRecording({ file, columns, me, signal, onShare }: Sending): Promise<Recording> {
+  if (!file.size) throw new Error(t("The file {name} is empty. Choose one with a recording in it.", { name: file.name }));
   const name = nameFor(file.name);
   const one = await begun(name, file.size, columns, me);
   const whole = new Sha256();

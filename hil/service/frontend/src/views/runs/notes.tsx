@@ -11,7 +11,7 @@ import { useMay, useMe } from "../../session.ts";
 import { Moment, Section, Written } from "../../ui/parts.tsx";
 
 const AGAIN_MS = 5000;
-const TAG = "[A-Za-z0-9][A-Za-z0-9_.:\\-]{0,39}";
+const TAG = "[\\p{L}\\p{N}][\\p{L}\\p{M}\\p{N}_.:\\-]{0,39}"; // letters and digits of any script
 
 export function Notes({ run }: { run: number }): JSX.Element {
   const path = `/runs/${run}`, found = useData<RunNotes>(`${path}/notes`, AGAIN_MS), may = useMay();

@@ -9,7 +9,7 @@ import { dayText } from "../../format.ts";
 import { t, tx } from "../../i18n/text.ts";
 import { useMay } from "../../session.ts";
 import { Moment, Section, Written } from "../../ui/parts.tsx";
-import { dayOf, shiftAt, type Shift } from "./local-times.ts";
+import { dayOf, shiftAt, spanAround, type Shift } from "./local-times.ts";
 
 const AGAIN_MS = 5000;
 const MOST = 50;
@@ -61,7 +61,7 @@ function Form({ bench, onDone }: { bench: string; onDone: () => void }): JSX.Ele
   return (
     <form onSubmit={(event) => void add(event)}>
       <div class="row">
-        <label class="field">{t("Day")} <input type="date" required value={day} onInput={(event) => setDay(event.currentTarget.value)} /></label>
+        <label class="field">{t("Day")} <input type="date" required min={dayOf(spanAround(new Date())[0])} max={dayOf(spanAround(new Date())[1])} value={day} onInput={(event) => setDay(event.currentTarget.value)} /></label>
         <label class="field">{t("Shift")}
           <select value={shift} onChange={(event) => setShift(event.currentTarget.value as Shift)}>
             {(Object.keys(SHIFTS) as Shift[]).map((one) => <option key={one} value={one}>{SHIFTS[one]()}</option>)}
