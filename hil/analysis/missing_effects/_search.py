@@ -83,7 +83,7 @@ class Search:
         """Fit a hypothesis, weighed by the spectrum that it leaves itself; the best of its names is kept."""
         goes_on = near is not None and near.point.hypothesis is hypothesis
         point = near.point if near and goes_on else self._begun(hypothesis, near)
-        best = before = self._candidate(point)
+        best = before = self.judged(point)
         problem = self.problem
         if goes_on:
             problem = problem.weighed_by(point.powers(problem).spectrum(problem.noise))
@@ -92,7 +92,7 @@ class Search:
         for number in range(rounds if rounds < ROUNDS else _MOST_ROUNDS):
             # slow misfit would trade a dead time for anything, until errors are weighed by their colour
             point = fit(problem, point, frozenset() if number or goes_on else frozenset({"torque_delay"}))
-            after = self._candidate(point)
+            after = self.judged(point)
             best = max(best, after, key=self.score)
             growth = after.log_likelihood - before.log_likelihood
             if abs(growth) < _SETTLED or (number >= ROUNDS - 1 and growth < _GROWING):
@@ -111,13 +111,14 @@ class Search:
         if hypothesis.kind != "rigid" or not any(EFFECTS[use.id].law.dry for use in hypothesis.terms):
             return point
         fresh = with_better_starts(self.problem, point_at(self.problem, hypothesis))
-        return max(point, fresh, key=lambda one: self._candidate(one).log_likelihood)
+        return max(point, fresh, key=lambda one: self.judged(one).log_likelihood)
 
     def at(self, hypothesis: Hypothesis, near: Candidate) -> Candidate:
         """A hypothesis as it is, from the starts of another."""
-        return self._candidate(point_at(self.problem, hypothesis, near.point.starts))
+        return self.judged(point_at(self.problem, hypothesis, near.point.starts))
 
-    def _candidate(self, point: Point) -> Candidate:
+    def judged(self, point: Point) -> Candidate:
+        """A fitted point with what it is weighed by."""
         hypothesis = point.hypothesis
         known = sum(may_join(effect, Hypothesis(hypothesis.base, {})) for effect in EFFECTS.values())
         coordinates = self.problem.coordinates(hypothesis)
@@ -209,23 +210,44 @@ def _best_of(
     Each gets a round, the better half more, until two are fitted to their end (K. Jamieson, A. Talwalkar,
     AISTATS 2016, 240).
     """
-    tried: list[Candidate] = []
+    begun: list[tuple[Candidate, float]] = []
     reached = 0.0
     most = max((gain for _, gain in suggested if gain < math.inf), default=0.0)
     for hypothesis, gain in suggested[:_TRIED]:
         if gain < HALF * min(most, reached):
             break  # others have more before them and more behind them
         show(" + ".join(hypothesis.names))
-        tried.append(done.fitted(hypothesis, best, 1))
-        reached = max(reached, tried[-1].log_likelihood - best.log_likelihood)
+        had = done.at(hypothesis, best).log_likelihood
+        one = done.fitted(hypothesis, best, 1)
+        begun.append((one, one.log_likelihood - had))
+        reached = max(reached, one.log_likelihood - best.log_likelihood)
     rounds = 1
-    tried = _best_of_each_name(done, tried)
+    tried = _best_of_each_name(done, _caught_up(done, begun))
     while len(tried) > _RIVALS:
         tried = tried[: max(_RIVALS, len(tried) // 2)]
         tried = _best_of_each_name(done, [done.fitted(one.point.hypothesis, one, rounds) for one in tried])
         rounds *= 2
     ended = [_opened(done, done.fitted(one.point.hypothesis, one), show) for one in tried]
     return max(ended, key=done.score, default=None)
+
+
+def _caught_up(done: Search, tried: Sequence[tuple[Candidate, float]]) -> list[Candidate]:
+    """After two rounds more as long as the last one brought more than a candidate is behind the best.
+
+    Args:
+        tried: candidates, and by how much log L grew in their last round.
+    """
+    for _ in range(_RIVALS):
+        ahead = max((done.score(one) for one, _ in tried), default=0.0)
+        again = []
+        for one, grew in tried:
+            if 0.0 < ahead - done.score(one) < grew:
+                after = done.fitted(one.point.hypothesis, one, 1)
+                again.append((after, after.log_likelihood - one.log_likelihood))
+            else:
+                again.append((one, grew))
+        tried = again
+    return [one for one, _ in tried]
 
 
 def _best_of_each_name(done: Search, tried: Sequence[Candidate]) -> list[Candidate]:
@@ -258,7 +280,30 @@ def _suggested(done: Search, best: Candidate) -> list[tuple[Hypothesis, float]]:
         for one in sizes if abrupt else sizes[:1]:
             starts = (base.with_term(one.use) for base in (best.point.hypothesis, one.numbers))
             found.append((likelier(*starts), one.gain))
+    found += _beside_the_base(done, best, least)
     return sorted(found, key=lambda one: -one[1])
+
+
+def _beside_the_base(done: Search, best: Candidate, least: float) -> list[tuple[Hypothesis, float]]:
+    """Names beside the base's numbers as they came, where these alone had to leave their tolerances.
+
+    A gain of a sensor may look like three numbers that are wrong: from there a fit would not come back.
+    """
+    if best.names or -best.prior < least:
+        return []
+    base = Hypothesis(done.problem.model, dict(done.problem.model.parameters))
+    near = done.at(base, best)
+    near = done.judged(with_better_starts(done.problem, near.point))
+    problem = done.problem.weighed_by(near.point.powers(done.problem).spectrum(done.problem.noise))
+    behind = done.score(best) - done.score(near)
+    promised = [
+        one for one in promises(problem, linearised(problem, near.point)) if one.gain - behind > least
+    ]
+    found = []
+    for one, *_ in best_by_name(promised, 1):
+        starts = (numbers.with_term(one.use) for numbers in (base, one.numbers))
+        found.append((max(starts, key=lambda start: done.score(done.at(start, near))), one.gain - behind))
+    return found
 
 
 def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candidate:

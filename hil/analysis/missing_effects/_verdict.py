@@ -170,8 +170,10 @@ def _named(
 
 
 def _remains(of: Judged, before: Candidate, after: Candidate) -> float:
-    """Share of the variance beyond noise that stays."""
-    problem = of.done.problem
+    """Share of the variance beyond noise that stays; none where numbers of the base had explained it."""
+    problem, done = of.done.problem, of.done
+    if after.prior - before.prior > done.cost_of_a_number(after) and done.score(after) > done.score(before):
+        return 0.0
     return remains(of.left(before), of.left(after), problem.noise**2, problem.slow_noise)
 
 
@@ -297,7 +299,7 @@ def _mismatches(
 
     found = []
     for name, (_, value, error) in numbers.items():
-        if best.names and name not in NUMBERS.values():
+        if best.names and not _stands_beside(name, best, done.problem.model):
             continue
         moved, doubt = _off(name, numbers, done)
         sure = float(ndtr((moved - 1.0) / max(doubt, 1e-12)))
@@ -310,6 +312,17 @@ def _mismatches(
                 )
             )
     return found
+
+
+def _stands_beside(name: str, best: Candidate, base: Model) -> bool:
+    """Whether a number that moved is an effect of its own beside others: a dead time, a drag.
+
+    A drag beside another loss is one where the base has none: what a friction's law gets wrong bends it.
+    """
+    laws = [EFFECTS[use.id].law for use in best.point.hypothesis.terms]
+    loses = any(law.follows is None and (law.dry or law.loss or law.load) for law in laws)
+    bent = name == NUMBERS["viscous_drag"] and loses and base.parameters[name] > 0.0
+    return name in NUMBERS.values() and not bent
 
 
 def _shows(problem: Problem, point: Point, name: str) -> bool:
