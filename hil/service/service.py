@@ -55,7 +55,7 @@ from hil.service.queue import Queue
 from hil.service.queue_forecast import QueueForecast
 from hil.service.recordings import GivenRecordings, Room
 from hil.service.sign_in import SignIn
-from hil.service.stop_post import StopPost
+from hil.service.stop_post import OwnBench, StopPost
 from hil.service.stops import Stops
 from hil.service.store import (
     BenchStore,
@@ -373,7 +373,10 @@ class Service:
     def tell_stop_post(self) -> None:
         """Have it know all benches that there are."""
         if self.stops.post is not None:
-            own = {name: str(bench.file.source) for name, bench in self._own.items()}
+            own = {
+                name: OwnBench(file=str(bench.file.source), stops=str(bench.stops or ""))
+                for name, bench in self._own.items()
+            }
             self.stops.post.know_benches(own, [name for name in self.benches if name not in self._own])
 
     async def leave(self) -> None:

@@ -50,6 +50,7 @@ class StopPostProcess:
         self._benches = Benches(own={})
         self._lines: dict[int, Line] = {}  # by descriptor
         self._pending: dict[str, Asked] = {}  # asked for, and not known to be on the disk
+        self._being_latched: set[str] = set()  # the disk has not answered yet
         self._reported: dict[str, set[tuple[str, str]]] = {}
         self._unread, self._descriptors = bytearray(), list[int]()
         self._latched: queue.SimpleQueue[Latched] = queue.SimpleQueue()
@@ -95,9 +96,9 @@ class StopPostProcess:
             line = self._tell_runs(bench, asked)
             stopped.append({"bench": bench, "run": line.run if line is not None else None})
             if bench in self._benches.own:
-                again = bench in self._pending
                 self._pending[bench] = asked
-                if not again or line is not None:
+                if bench not in self._being_latched or line is not None:
+                    self._being_latched.add(bench)
                     self._latches.latch(bench, asked, Path(line.folder if line is not None else ""))
             else:
                 self._report(bench, asked, line, latched=False)
@@ -129,6 +130,7 @@ class StopPostProcess:
         self._bell.recv(_AT_ONCE)
         while not self._latched.empty():
             one = self._latched.get()
+            self._being_latched.discard(one.bench)
             if not one.problem:
                 self._pending.pop(one.bench, None)
             if one.new or one.problem:

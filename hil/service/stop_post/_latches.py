@@ -12,6 +12,7 @@ from pathlib import Path
 from hil.core.errors import HilError
 from hil.execution.benches import Bench
 from hil.service.stop_post._answering import Asked
+from hil.service.stop_post._messages import OwnBench
 
 logger = logging.getLogger(__name__)
 
@@ -35,18 +36,21 @@ class Latches:
 
     def __init__(self, done: Callable[[Latched], None]) -> None:
         self._done = done
-        self._files: dict[str, str] = {}
+        self._known: dict[str, OwnBench] = {}
         self._benches: dict[str, Bench] = {}
         self._waiting: queue.SimpleQueue[tuple[str, Asked, Path]] = queue.SimpleQueue()
         threading.Thread(target=self._work, daemon=True, name="latches").start()
 
-    def know(self, files: dict[str, str]) -> None:
-        """Files of the service's own benches, by name: read beforehand, for later may be too late."""
-        self._files = files
-        for name, file in files.items():
+    def know(self, benches: dict[str, OwnBench]) -> None:
+        """The service's own benches, by name: read beforehand, for later may be too late."""
+        changed = [name for name in self._known if benches.get(name) != self._known[name]]
+        self._known = benches
+        for name in changed:
+            self._benches.pop(name, None)
+        for name, bench in benches.items():
             if name not in self._benches:
                 try:
-                    self._benches[name] = Bench(file)
+                    self._benches[name] = _bench_of(bench)
                 except HilError as error:
                     logger.error("%s: cannot be latched: %s", name, error)
 
@@ -58,7 +62,7 @@ class Latches:
         while True:
             name, asked, folder = self._waiting.get()
             try:
-                bench = self._benches.get(name) or Bench(self._files[name])
+                bench = self._benches.get(name) or _bench_of(self._known[name])
                 new = not bench.stopped()
                 if new:  # one latch says it; more would only fill the disk
                     bench.stop(asked.by, folder, origin=asked.origin, way=asked.way)
@@ -69,3 +73,7 @@ class Latches:
                 logger.exception("internal error")
                 problem = f"internal error: {type(error).__name__}: {error}"
                 self._done(Latched(name, asked, problem=problem))
+
+
+def _bench_of(bench: OwnBench) -> Bench:
+    return Bench(bench.file, Path(bench.stops) if bench.stops else None)

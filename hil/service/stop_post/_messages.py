@@ -24,11 +24,18 @@ class Owner(_Data):
 # --- from the service ---
 
 
+class OwnBench(_Data):
+    """A bench file, and the folder of the service: there lie the stops of a bench that is simulated."""
+
+    file: str
+    stops: str = ""
+
+
 class Benches(_Data):
-    """The service's own benches by name, with the file of each; names of those of agents."""
+    """The service's own benches by name; names of those of agents."""
 
     kind: Literal["benches"] = "benches"
-    own: dict[str, str]
+    own: dict[str, OwnBench]
     others: list[str] = []
 
 

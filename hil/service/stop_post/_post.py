@@ -20,6 +20,7 @@ from hil.service.stop_post._messages import (
     Benches,
     Line,
     Message,
+    OwnBench,
     Owner,
     Owners,
     Reset,
@@ -104,8 +105,8 @@ class StopPost:
         """Whether it answers."""
         return self._up.is_set()
 
-    def know_benches(self, own: Mapping[str, str], others: Sequence[str]) -> None:
-        """Which benches there are: the service's own with their files, and those of agents."""
+    def know_benches(self, own: Mapping[str, OwnBench], others: Sequence[str]) -> None:
+        """Which benches there are: the service's own with their files and stops, and those of agents."""
         benches = Benches(own=dict(own), others=sorted(others))
         if benches != self._benches:
             self._benches = benches

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import http.client
 import json
+import queue
 import time
 from http import HTTPStatus
 from pathlib import Path
@@ -13,9 +14,11 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from hil.execution.benches import Bench
 from hil.service.connection_limit import ConnectionLimit
 from hil.service.stop_post._answering import Answering, Asked, RefusedError
-from hil.service.stop_post._messages import Owner
+from hil.service.stop_post._latches import Latched, Latches
+from hil.service.stop_post._messages import OwnBench, Owner
 from tests.hil.service.served import Served, served
 
 ANNA = "hil_secret"
@@ -114,6 +117,38 @@ def test_one_address_does_not_hold_all_unless_it_is_a_proxy() -> None:
 
 
 @pytest.mark.slow
+def test_the_stop_post_alone_latches_a_free_bench_where_its_service_looks(tmp_path: Path) -> None:
+    """Stops of a simulated bench lie in the folder of its service: one latched elsewhere holds nothing up."""
+    with served(tmp_path / "data", "--rate", "1000", state=tmp_path / "state") as service:
+        stop_url = service.get("/health")["stop_url"]
+        for _ in range(2):
+            assert _stopped(stop_url)[0] == 200
+            _until(lambda: service.get("/benches/sim")["state"] == "emergency_stop")
+            service.post("/benches/sim/reset")
+            _until(lambda: service.get("/benches/sim")["state"] != "emergency_stop")
+
+
+@pytest.mark.parametrize("folder", ["", "stops"], ids=["hardware", "simulated"])
+def test_a_latch_that_failed_is_tried_again_at_the_next_stop(folder: str, tmp_path: Path) -> None:
+    """A file where the folder of stops has to be: that stop is reported as not latched, the next one is."""
+    done: queue.SimpleQueue[Latched] = queue.SimpleQueue()
+    latches = Latches(done.put)
+    stops = tmp_path / "stops" if folder else None
+    latches.know({"sim": OwnBench(file="sim", stops=str(stops or ""))})
+    asked = Asked("sim", "anna", "operator", "10.0.0.7", "api")
+    bench = Bench("sim", stops)
+    if stops is not None:
+        stops.write_text("in the way")
+        latches.latch("sim", asked, Path())
+        assert done.get(timeout=10.0).problem
+        stops.unlink()
+    latches.latch("sim", asked, Path())
+    assert not done.get(timeout=10.0).problem
+    assert "anna" in bench.stopped()
+    bench.reset("anna")
+
+
+@pytest.mark.slow
 def test_a_stop_that_is_repeated_leaves_one_latch_and_one_row(tmp_path: Path) -> None:
     with served(tmp_path / "data", "--rate", "1000", state=tmp_path / "state") as service:
         stop_url = service.get("/health")["stop_url"]
@@ -124,7 +159,7 @@ def test_a_stop_that_is_repeated_leaves_one_latch_and_one_row(tmp_path: Path) ->
         assert [(one["who"], one["detail"]) for one in rows] == [
             ("somebody at 127.0.0.1", "from 127.0.0.1, api")
         ]
-        latches = list((tmp_path / "state").rglob("*.json"))
+        latches = list((tmp_path / "data" / "emergency-stops").glob("*.json"))
         assert [json.loads(path.read_text())["origin"] for path in latches] == ["127.0.0.1"]
         service.post("/benches/sim/reset")
         status, answer = _stopped(stop_url, {"Origin": service.url})
