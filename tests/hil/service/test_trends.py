@@ -90,6 +90,10 @@ def test_the_store_gives_the_newest_runs_of_a_plan_and_a_dut_oldest_first(tmp_pa
     assert [point.value for _, point in runs.criteria("sim", "p", None, 3)] == [2.0, 3.0, 4.0]
     assert [point.value for _, point in runs.criteria("sim", "p", "A", 100)] == [1.0, 3.0]
     assert runs.criteria("other", "p", None, 3) == []
+    cut, _ = runs.add(NewRun("p", "P", "name: p", "p.yaml", "sim", {}, "anna"), approved=True)
+    runs.take(cut.id, "me")
+    runs.end(cut.id, "ended", exit_code=3, result=result.model_copy(update={"verdict": "error"}), dut="A")
+    assert [point.value for _, point in runs.criteria("sim", "p", "A", 100)] == [1.0, 3.0]
     run, _ = runs.add(NewRun("p", "P", "name: p # changed", "p.yaml", "sim", {}, "anna"), approved=True)
     runs.take(run.id, "me")
     runs.end(run.id, "ended", exit_code=0, result=result)

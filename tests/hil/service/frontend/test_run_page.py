@@ -40,7 +40,7 @@ def test_a_run_that_waits_says_why_and_has_the_action_that_ends_it(
     expect(why).to_contain_text("It waits for a latched emergency stop of sim.")
     there.over(asking)
     refuse_hard_to_use(page)
-    why.get_by_role("button", name="It is safe: reset the emergency stop").click()
+    why.get_by_role("button", name=f"reset the emergency stop. Run {waiting} starts then.").click()
     there.over(waiting)
     expect(page.locator("h1")).to_contain_text("pass")
     expect(why).to_have_count(0)
@@ -92,3 +92,25 @@ def test_a_run_that_was_stopped_begins_with_what_stopped_it(page: playwright.Pag
     outcome.get_by_role("button", name="Show it in the plots").click()
     expect(page).to_have_url(re.compile(r"\?t=\d"))
     expect(heading(page, re.compile("asking"))).to_be_visible()
+
+
+@pytest.mark.parametrize("refusals", [("404 (Not Found)",)])
+def test_the_address_of_a_bench_that_there_is_not_is_no_alarm(page: playwright.Page, there: Served) -> None:
+    for address in ("benches/none", "benches/none/panel"):
+        to(page, there, address)
+        expect(heading(page, "There is no bench 'none'")).to_be_visible()
+        expect(page.get_by_role("alert")).to_have_count(0)
+        expect(page.get_by_role("button", name="Emergency stop all benches")).to_be_visible()
+
+
+def test_after_a_stop_the_panel_shows_no_old_values_and_no_time_left(
+    page: playwright.Page, there: Served
+) -> None:
+    asking = there.queue("asking")
+    there.until(asking, lambda run: run["prompt"] is not None)
+    to(page, there, "benches/sim/panel")
+    page.get_by_role("button", name="Emergency stop sim").click()
+    expect(page.locator("h1")).to_contain_text("Emergency stop")
+    expect(page.get_by_role("button", name="End the run")).to_have_count(0)
+    expect(page.locator(".dials dd:not(.quiet)").first).to_contain_text("–")
+    expect(page.get_by_text(re.compile("about .* left"))).to_have_count(0)

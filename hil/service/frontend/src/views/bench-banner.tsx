@@ -11,7 +11,7 @@ import { useLost, type BenchState } from "../live.ts";
 import { useMay, useMe } from "../session.ts";
 import { linkTo } from "../ui/parts.tsx";
 import { PromptCard } from "./panel-prompt.tsx";
-import { aboutBench, headlineOf, isHeld, titleOf } from "./bench-words.ts";
+import { aboutBench, headlineOf, isHeld, nextIn, resetText, titleOf } from "./bench-words.ts";
 
 export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 }): JSX.Element {
   const { bench, running, message } = state;
@@ -30,11 +30,11 @@ export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 
 }
 
 export function Actions({ state, answers = true }: { state: BenchState; answers?: boolean }): JSX.Element | null {
-  const { bench, running, message } = state;
+  const { bench, running, message, queue } = state;
   const may = useMay(), me = useMe();
   const name = encodeURIComponent(bench.name);
   const reached = !bench.away_since;
-  const held = isHeld(running);
+  const held = isHeld(running), stopped = bench.state === "emergency_stop";
   const order = (what: string) => () => void attempt(() => post(`/runs/${running?.id}/${what}`));
   const release = () => {
     if (confirm(t("Is {bench} no longer driven by its agent? It can then be driven by another agent. A run of this agent is marked as interrupted.", { bench: bench.name }))) void attempt(() => ask("DELETE", `/benches/${name}/agent`));
@@ -45,10 +45,10 @@ export function Actions({ state, answers = true }: { state: BenchState; answers?
     <>
       {answers && running && message && may("operator") && reached ? <AnswerForm run={running.id} /> : null}
       <div class="row">
-        {running && may("operator") && reached && !held ? <button type="button" onClick={order("pause")}>{t("Pause")}</button> : null}
-        {running && may("operator") && reached && held ? <button type="button" class="main" onClick={order("resume")}>{t("Resume")}</button> : null}
-        {running && may("operator") ? <button type="button" onClick={order("abort")}>{t("End the run")}</button> : null}
-        {mayReset ? <button type="button" class="main" onClick={() => void attempt(() => post(`/benches/${name}/reset`))}>{t("It is safe: reset the emergency stop")}</button> : null}
+        {running && may("operator") && reached && !held && !stopped ? <button type="button" onClick={order("pause")}>{t("Pause")}</button> : null}
+        {running && may("operator") && reached && held && !stopped ? <button type="button" class="main" onClick={order("resume")}>{t("Resume")}</button> : null}
+        {running && may("operator") && !stopped ? <button type="button" onClick={order("abort")}>{t("End the run")}</button> : null}
+        {mayReset ? <button type="button" class="main" onClick={() => void attempt(() => post(`/benches/${name}/reset`))}>{resetText(nextIn(queue))}</button> : null}
         {bench.away_since && may("engineer") ? <button type="button" onClick={release}>{t("Release from its agent")}</button> : null}
         {!bench.lease && may("operator") && (!bench.reserved_by || bench.reserved_by === me.name) ? <button type="button" onClick={() => void attempt(() => ask("PUT", `/benches/${name}/lease`, { for_s: 3600 }))}>{t("Reserve for an hour")}</button> : null}
         {bench.lease && may("operator") && mayRelease ? <button type="button" onClick={() => void attempt(() => ask("DELETE", `/benches/${name}/lease`))}>{t("End the reservation")}</button> : null}

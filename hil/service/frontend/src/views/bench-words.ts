@@ -63,3 +63,8 @@ export function leftOf(run: Run, nowMs: number): number | null {
   if (share < LEAST_SHARE || !Number.isFinite(began)) return null;
   return Math.max(0, ((nowMs - began) / 1000) * ((1 - share) / share));
 }
+
+// What the button does that resets a stop: the queue goes on.
+export function resetText(next: Run | null | undefined): string {
+  return next ? t("It is safe: reset the emergency stop. Run {run} starts then.", { run: next.id }) : t("It is safe: reset the emergency stop");
+}

@@ -17,6 +17,7 @@ import { NewestHandover } from "./team/handovers.tsx";
 
 const SHOWN = ["motor_speed_rad_s", "vehicle_speed_m_s", "motor_torque_nm", "shaft_torque_nm"];
 const EVERY_MS = 250;
+const OLD_MS = 1500;
 
 export function Panel({ bench }: { bench: string }): JSX.Element {
   const live = useLive(bench, SHOWN);
@@ -53,8 +54,8 @@ function State({ state }: { state: BenchState }): JSX.Element {
   );
 }
 
-function Running({ state: { running } }: { state: BenchState }): JSX.Element | null {
-  const now = useNow(), left = running ? leftOf(running, now) : null;
+function Running({ state: { bench, running } }: { state: BenchState }): JSX.Element | null {
+  const now = useNow(), left = running && bench.state !== "emergency_stop" ? leftOf(running, now) : null;
   if (!running) return null;
   return (
     <>
@@ -111,11 +112,13 @@ function useSounds(state: BenchState | null): void {
 function useNewest(live: Live): Record<string, number | null> {
   const [values, setValues] = useState<Record<string, number | null>>({});
   useEffect(() => {
-    let newest: Record<string, number | null> = {};
+    let newest: Record<string, number | null> = {}, heard = 0;
     const stop = live.onSamples(({ channels }) => {
+      heard = performance.now();
       newest = Object.fromEntries(Object.entries(channels).map(([name, { highest }]) => [name, highest.findLast((one) => one !== null) ?? null]));
     });
-    const timer = setInterval(() => setValues(newest), EVERY_MS);
+    // what is no longer measured must not stand there as if it were
+    const timer = setInterval(() => setValues(performance.now() - heard < OLD_MS ? newest : {}), EVERY_MS);
     return () => { stop(); clearInterval(timer); };
   }, [live]);
   return values;

@@ -1,7 +1,10 @@
 // Which view an address shows.
 
-import type { JSX } from "preact";
+import type { ComponentChildren, JSX } from "preact";
+import { Refused } from "../api/client.ts";
+import type { Bench } from "../api/types.ts";
 import { to, type Place } from "../addresses.ts";
+import { useData } from "../data.ts";
 import { t } from "../i18n/text.ts";
 import { Heading } from "../ui/parts.tsx";
 import { Audit } from "./audit.tsx";
@@ -29,8 +32,8 @@ import { Identifications, IdentificationView } from "./studies/identifications.t
 export function View({ place }: { place: Place }): JSX.Element {
   switch (place.view) {
     case "benches": return <Benches />;
-    case "bench": return <BenchView key={place.bench} bench={place.bench} />;
-    case "panel": return <Panel key={place.bench} bench={place.bench} />;
+    case "bench": return <KnownBench key={place.bench} bench={place.bench}><BenchView bench={place.bench} /></KnownBench>;
+    case "panel": return <KnownBench key={place.bench} bench={place.bench}><Panel bench={place.bench} /></KnownBench>;
     case "wall": return <Wall key={place.bench} bench={place.bench} />;
     case "runs": return <Runs />;
     case "run": return <RunView key={place.run} run={place.run} />;
@@ -69,4 +72,13 @@ function Missing({ path }: { path: string }): JSX.Element {
       <p>{t("There is nothing at {path}.", { path })} <a href={to.list("benches")}>{t("All benches")}</a></p>
     </>
   );
+}
+
+// A wrong name is no alarm: only a bench that there is gets a live view and a stop of its own.
+function KnownBench({ bench, children }: { bench: string; children: ComponentChildren }): JSX.Element {
+  const found = useData<Bench>(`/benches/${encodeURIComponent(bench)}`);
+  if (found.error instanceof Refused && found.error.status === 404) {
+    return <><Heading>{t("There is no bench '{bench}'", { bench })}</Heading><p>{t("The service has no bench of this name.")} <a href={to.list("benches")}>{t("Benches")}</a></p></>;
+  }
+  return found.loading && !found.data ? <p class="quiet">{t("Asking the service …")}</p> : <>{children}</>;
 }
