@@ -209,7 +209,7 @@ class RunStore:
         """Criteria of a plan's newest runs that ended on a bench, by name, oldest first.
 
         Only runs of the very same text as the newest: with other values of its variables, or after a change
-        of the plan, figures are not those of one and the same test. Nor are those of a run that was cut short.
+        of the plan, figures are not those of one and the same test. Nor are those of a run cut short.
         """
         ended = RunRow.bench == bench, RunRow.plan == plan, RunRow.state == "ended", RunRow.verdict != "error"
         text = select(RunRow.plan_text).where(*ended).order_by(RunRow.id.desc()).limit(1).scalar_subquery()
