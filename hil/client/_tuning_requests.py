@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import TypeVar
 
 from hil.api_schemas.study import STUDY_OVER, StudyData
 from hil.api_schemas.tuning import (
@@ -16,6 +17,7 @@ from hil.api_schemas.tuning import (
 )
 from hil.client._requests import Requests
 
+T = TypeVar("T", TuningData, AutotuningData)
 _ENVELOPE_WITHIN_S = 300.0
 _LOOK_S = 0.5
 
@@ -33,12 +35,7 @@ class TuningRequests(Requests):
 
     def tuning_progress(self, study: int) -> Iterator[TuningData]:
         """The tuning every half second, until it is over; the last time with what was chosen."""
-        while True:
-            found = self.tuning(study)
-            yield found
-            if found.study.state in STUDY_OVER:
-                return
-            time.sleep(_LOOK_S)
+        return _until_over(lambda: self.tuning(study))
 
     def plan_autotuning(self, wanted: AutotuningPlanned) -> EnvelopeData:
         """What a sequence would ask of its bench at most, predicted; nothing moves."""
@@ -55,9 +52,13 @@ class TuningRequests(Requests):
 
     def autotuning_progress(self, study: int) -> Iterator[AutotuningData]:
         """The sequence every half second, until it is over; the last time with what it came to."""
-        while True:
-            found = self.autotuning(study)
-            yield found
-            if found.study.state in STUDY_OVER:
-                return
-            time.sleep(_LOOK_S)
+        return _until_over(lambda: self.autotuning(study))
+
+
+def _until_over(look: Callable[[], T]) -> Iterator[T]:
+    while True:
+        found = look()
+        yield found
+        if found.study.state in STUDY_OVER:
+            return
+        time.sleep(_LOOK_S)

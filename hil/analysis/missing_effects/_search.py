@@ -182,8 +182,8 @@ def _grown(
     takes off half of what stays or more, only those are looked at that promise half of what it brought.
     """
     suggested = [*((one, math.inf) for one in linear), *_suggested(done, best)]
-    losses = [one for one in suggested if _is_loss(one[0])]
-    rarer = [one for one in suggested if not _is_loss(one[0])]
+    losses = [one for one in suggested if is_loss(one[0].terms[-1])]
+    rarer = [one for one in suggested if not is_loss(one[0].terms[-1])]
     grown = _best_of(done, best, losses, show)
     if grown is not None and done.score(grown) > done.score(best):
         had, has = (done.problem.mean_square(one.point.errors) for one in (best, grown))
@@ -194,8 +194,9 @@ def _grown(
     return max((one for one in (grown, others) if one is not None), key=done.score, default=None)
 
 
-def _is_loss(hypothesis: Hypothesis) -> bool:
-    law = EFFECTS[hypothesis.terms[-1].id].law
+def is_loss(use: EffectUse) -> bool:
+    """Whether an effect brakes whatever turns: a friction, a drag, a resistance."""
+    law = EFFECTS[use.id].law
     return law.follows is None and any(one is not None for one in (law.dry, law.loss, law.load))
 
 
@@ -252,8 +253,10 @@ def _caught_up(done: Search, tried: Sequence[tuple[Candidate, float]]) -> list[C
 
 def _best_of_each_name(done: Search, tried: Sequence[Candidate]) -> list[Candidate]:
     """The likeliest of each set of names, best first: starts of one name are no rivals."""
-    ranked = sorted(tried, key=done.score)
-    return sorted({one.names: one for one in ranked}.values(), key=done.score, reverse=True)
+    found: dict[tuple[str, ...], Candidate] = {}
+    for one in sorted(tried, key=done.score, reverse=True):
+        found.setdefault(one.names, one)
+    return list(found.values())
 
 
 def _suggested(done: Search, best: Candidate) -> list[tuple[Hypothesis, float]]:
@@ -266,11 +269,8 @@ def _suggested(done: Search, best: Candidate) -> list[tuple[Hypothesis, float]]:
     by_name = {one.hypothesis.names: one.hypothesis for one in reversed(read)}
     order = dict.fromkeys(one.hypothesis.names for one in read)
 
-    def likelier(*starts: Hypothesis) -> Hypothesis:
-        return max(starts, key=lambda one: done.score(done.at(one, best)))
-
     found = [
-        (likelier(one, best.point.hypothesis.with_term(one.terms[-1], one.opened[-1])), math.inf)
+        (_likelier(done, best, one, best.point.hypothesis.with_term(one.terms[-1], one.opened[-1])), math.inf)
         for one in (by_name[names] for names in order)
     ]
     promised = promises(done.problem, linearised(done.problem, best.point))
@@ -279,7 +279,7 @@ def _suggested(done: Search, best: Candidate) -> list[tuple[Hypothesis, float]]:
         abrupt = EFFECTS[sizes[0].use.id].abrupt
         for one in sizes if abrupt else sizes[:1]:
             starts = (base.with_term(one.use) for base in (best.point.hypothesis, one.numbers))
-            found.append((likelier(*starts), one.gain))
+            found.append((_likelier(done, best, *starts), one.gain))
     found += _beside_the_base(done, best, least)
     return sorted(found, key=lambda one: -one[1])
 
@@ -302,8 +302,13 @@ def _beside_the_base(done: Search, best: Candidate, least: float) -> list[tuple[
     found = []
     for one, *_ in best_by_name(promised, 1):
         starts = (numbers.with_term(one.use) for numbers in (base, one.numbers))
-        found.append((max(starts, key=lambda start: done.score(done.at(start, near))), one.gain - behind))
+        found.append((_likelier(done, near, *starts), one.gain - behind))
     return found
+
+
+def _likelier(done: Search, near: Candidate, *starts: Hypothesis) -> Hypothesis:
+    """Of hypotheses as they are, from where recordings begin in another."""
+    return max(starts, key=lambda one: done.score(done.at(one, near)))
 
 
 def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candidate:

@@ -26,7 +26,7 @@ from hil.analysis.missing_effects._orders import PERIODS, turns
 from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Replay, Verdict
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import NUMBERS
-from hil.analysis.missing_effects._search import HALF, Search
+from hil.analysis.missing_effects._search import HALF, Search, is_loss
 from hil.analysis.missing_effects._spectrum import RIGHT_TO
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
@@ -319,8 +319,7 @@ def _stands_beside(name: str, best: Candidate, base: Model) -> bool:
 
     A drag beside another loss is one where the base has none: what a friction's law gets wrong bends it.
     """
-    laws = [EFFECTS[use.id].law for use in best.point.hypothesis.terms]
-    loses = any(law.follows is None and (law.dry or law.loss or law.load) for law in laws)
+    loses = any(is_loss(use) for use in best.point.hypothesis.terms)
     bent = name == NUMBERS["viscous_drag"] and loses and base.parameters[name] > 0.0
     return name in NUMBERS.values() and not bent
 

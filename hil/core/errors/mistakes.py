@@ -177,14 +177,14 @@ def mistakes_of(
         if mistake["type"] == "too_short" and any(one[: len(loc)] == loc != one for one in places):
             continue  # it counts the entries that are right
         place = (key, *mistake["loc"]) if key else mistake["loc"]
-        name = printable(_named(place), 120)
+        name = printable(dotted(place), 120)
         if not any(table == name or table.startswith(f"{name}.") for table in tables):
             found.append(_in_words(name, dict(mistake), model))
     return found
 
 
-def _named(place: Iterable[int | str]) -> str:
-    """A dotted key; entries of lists are counted from 1, as `lines_of` counts them."""
+def dotted(place: Iterable[int | str]) -> str:
+    """Where pydantic finds a mistake, as a key; entries of lists are counted from 1, as by `lines_of`."""
     parts = [f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in place if part != "[key]"]
     return "".join(parts).removeprefix(".")
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from hil.api_schemas.api import Problem
-from hil.core.errors.mistakes import needed
+from hil.core.errors.mistakes import dotted, needed
 from hil.core.errors.wording import listed, printable
 
 _PLACES = ("body", "query", "path", "header", "cookie")
@@ -45,11 +45,10 @@ def problem_of(errors: Sequence[Mapping[str, Any]]) -> Problem:
 
 def _field(error: Mapping[str, Any]) -> str:
     """The name of the field; a query or a path has it without where it stands."""
-    loc = [part for part in error["loc"] if part != "[key]"]
-    if error["type"] == "json_invalid" or (loc and loc[0] in _PLACES):
-        loc = [] if error["type"] == "json_invalid" else loc[1:]
-    parts = [f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in loc]
-    return printable("".join(parts).removeprefix("."), 120)
+    if error["type"] == "json_invalid":
+        return ""
+    first, *rest = error["loc"] or ("",)
+    return printable(dotted(rest if first in _PLACES else error["loc"]), 120)
 
 
 def _what(error: Mapping[str, Any]) -> str:

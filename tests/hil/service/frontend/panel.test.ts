@@ -41,8 +41,10 @@ test("who has a bench by a reservation under way is named as who has it for an h
 });
 
 test("what is left is as long as what was, by their shares", () => {
-  assert.equal(leftOf(RUN, Date.parse("2026-11-28T10:01:00Z")), 180);
-  assert.equal(leftOf({ ...RUN, share: 0 }, Date.parse("2026-11-28T10:01:00Z")), null);
+  const now = Date.parse("2026-11-28T10:01:00Z"), { bench } = stateOf("running");
+  assert.equal(leftOf(bench, RUN, now), 180);
+  assert.equal(leftOf(bench, { ...RUN, share: 0 }, now), null);
+  assert.equal(leftOf(stateOf("emergency_stop").bench, RUN, now), null);
 });
 
 test("a trip, a question and an end sound once, and the first look at a bench does not", () => {

@@ -57,7 +57,8 @@ export const aboutBench = (bench: Bench, title: string): string =>
 const LEAST_SHARE = 0.02; // of which the rest is estimated
 
 // Seconds that are left of a run, if it goes on as so far; null where too little has been done.
-export function leftOf(run: Run, nowMs: number): number | null {
+export function leftOf(bench: Bench, run: Run | null, nowMs: number): number | null {
+  if (!run || bench.state === "emergency_stop") return null;
   if (run.prompt || isHeld(run)) return null; // that takes as long as people take
   const share = run.share ?? 0, began = run.started_at ? Date.parse(run.started_at) : NaN;
   if (share < LEAST_SHARE || !Number.isFinite(began)) return null;

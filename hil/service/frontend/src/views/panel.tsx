@@ -55,7 +55,7 @@ function State({ state }: { state: BenchState }): JSX.Element {
 }
 
 function Running({ state: { bench, running } }: { state: BenchState }): JSX.Element | null {
-  const now = useNow(), left = running && bench.state !== "emergency_stop" ? leftOf(running, now) : null;
+  const now = useNow(), left = leftOf(bench, running, now);
   if (!running) return null;
   return (
     <>

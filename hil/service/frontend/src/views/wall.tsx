@@ -37,7 +37,7 @@ export function Wall({ bench }: { bench: string | null }): JSX.Element {
 const useBegan = (): number => useState(() => performance.now())[0];
 
 function Card({ of: { bench, running, queue, latest }, nowMs, alone }: { of: Shown; nowMs: number; alone: boolean }): JSX.Element {
-  const left = running && bench.state !== "emergency_stop" ? leftOf(running, nowMs) : null;
+  const left = leftOf(bench, running, nowMs);
   const next = nextIn(queue), has = running?.requested_by || holderOf(bench);
   return (
     <li class={`bench ${running?.prompt ? "in_use" : bench.state}`}>
