@@ -180,6 +180,12 @@ class Supervision(Table):
     alone_after_s: float = Field(
         2.0, ge=0.5, le=60, description="the run is ended if its command is silent for this time, s"
     )
+    run_down_s: float = Field(
+        10.0,
+        ge=0,
+        le=600,
+        description="after a stop the axle is recorded until it stands, at most this time, s",
+    )
 
 
 class ReportTable(Table):

@@ -10,6 +10,8 @@ from hil.core.errors import EmergencyStopError, InterruptError
 from hil.engine.ipc.ipc import Terminal
 from hil.engine.ipc.ipc_messages import EmergencyAsked, Question
 
+#: Of the clock on the wall, s: what comes sooner after an emergency stop is the same one, by another way.
+SAME_STOP_S = 1.0
 LOOK_S = 0.02  # how often it is looked whether a line was typed
 _VIRTUAL_TICK_S = 0.01  # what passes at once while no one has to be awaited
 PAUSE, RESUME, END, EMERGENCY = "p", "r", "q", "e"
@@ -38,7 +40,7 @@ class Operator:
         self._standing = standing
         self._wants_pause = self._wants_to_go_on = False
         self._answer: str | None = None
-        self._stopped = False
+        self._stopped_s: float | None = None
 
     @property
     def present(self) -> bool:
@@ -54,7 +56,7 @@ class Operator:
         """Take what was typed since the last look; never waits.
 
         An emergency stop counts once: one that is repeated, by the same or another way, does not disturb
-        what makes the bench safe.
+        what makes the bench safe; one that comes later asks that nothing more is waited for.
 
         Raises:
             EmergencyStopError: somebody asked for it.
@@ -75,9 +77,12 @@ class Operator:
             self._answer = line.strip()
 
     def _stop(self, error: EmergencyStopError) -> None:
-        if not self._stopped:
-            self._stopped = True
+        now_s = time.monotonic()
+        if self._stopped_s is None:
+            self._stopped_s = now_s
             raise error
+        if now_s - self._stopped_s > SAME_STOP_S:
+            self._loop.stop_requested = True
 
     def take_pause(self) -> bool:
         """Whether a pause was asked for since the last call."""

@@ -34,9 +34,10 @@ from hil.engine.bench.bus_tally import BusLoads
 from hil.engine.bench.request_timing import COLLECT_S, RequestTiming
 from hil.engine.ipc.ipc import RECORDING, RunOutcome, RunRequest, analysed_apart, analysed_here
 from hil.engine.run.arming import Arming
-from hil.engine.run.operator import Operator
+from hil.engine.run.operator import GONE_REASON, Operator
 from hil.engine.run.preflight import channels_of, preflight, refuse_unconfirmed
 from hil.engine.run.recorder import Recorder
+from hil.engine.run.run_down import follow_run_down
 from hil.engine.run.run_files import store_expiry, store_inputs, store_result
 from hil.engine.run.run_monitoring import Failures, RunMonitoring
 from hil.engine.run.safety import reach_safe_state
@@ -108,6 +109,8 @@ class _Run:
                 self._request.watched.concluded(armed=self._arming.armed, unsafe=self._unsafe)
             request = self._request
             self._stopped = keep_latched(self._failures.error, request.bench, request.out, request.stops)
+            self._tell_safe_state()
+        self._run_down()
         return self._finish(time.perf_counter() - started)
 
     def _prepare(self) -> None:
@@ -176,6 +179,29 @@ class _Run:
                 gone, where="supervision", fix="make the reports of this run with hil report"
             )
 
+    def _tell_safe_state(self) -> None:
+        if self._arming.armed:
+            self._failures.tell("safe_state", "; ".join(self._unsafe) or f"confirmed by {self._arming.names}")
+
+    def _run_down(self) -> None:
+        """After a stop the axle may still turn: record that, with every device safe, for a limited time."""
+        request, failures = self._request, self._failures
+        longest_s = request.bench.supervision.run_down_s
+        nobody_waits = self._bench.loop.stop_reason == GONE_REASON
+        if failures.error is None or self._unsafe or not self._arming.armed or nobody_waits or not longest_s:
+            return
+        speeds = self._watch.begin_run_down()
+        try:
+            self._unsafe = follow_run_down(self._bench, speeds, longest_s, failures.note, failures.tell)
+        except HilError as error:  # also an emergency stop, which has reached a bench that is safe already
+            failures.take(error)
+        except Exception as error:  # a mistake in the program, which may be what ended the run
+            failures.tell("run_down", f"internal error: {type(error).__name__}: {error}")
+        if self._stopped is None:
+            self._stopped = keep_latched(failures.error, request.bench, request.out, request.stops)
+        if self._unsafe:
+            self._tell_safe_state()
+
     def _look_at_drift(self) -> None:
         """The drives are off; what comes from here on is no part of the run's rows."""
         try:
@@ -223,6 +249,7 @@ class _Run:
         segments = self._conductor.segments
         text = segments[-1].id if segments else "coming up"
         text = f"held: {self._watch.hold.causes_shown}" if self._watch.hold.causes_shown else text
+        text = "the axle runs down" if self._watch.running_down else text
         self._request.progress(min(1.0, passed_s / max(self._expected_s, 1e-9)), text)
 
     def _blame(self) -> str:
@@ -243,7 +270,6 @@ class _Run:
         safe: SafeState = "not_needed"
         if self._arming.armed:
             safe = "not_confirmed" if self._unsafe else "confirmed"
-            self._failures.tell("safe_state", "; ".join(self._unsafe) or f"confirmed by {self._arming.names}")
         failures = self._failures
         if self._unsafe and not isinstance(failures.error, BenchError):
             failures.error = BenchError(

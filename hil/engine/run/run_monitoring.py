@@ -15,6 +15,7 @@ from hil.engine.run.limits import LimitWatch
 from hil.engine.run.liveness import LivenessWatch
 from hil.engine.run.operator import LOOK_S, Operator
 from hil.engine.run.recorder import Recorder
+from hil.engine.run.run_down import AxleSpeeds
 from hil.engine.run.zero import ZeroCheck
 
 
@@ -86,6 +87,7 @@ class RunMonitoring:
         # asked of the class once: a look at a protocol's names costs more than all else here
         self._say_emergency = [device for device in bench.devices if isinstance(device, SaysEmergency)]
         self.going_safe = self.rows_finished = False
+        self._run_down: AxleSpeeds | None = None
         bench.loop.on_block(recorder.take_frames)
         bench.loop.on_drained(self._take_samples)
 
@@ -99,6 +101,16 @@ class RunMonitoring:
         """What is beyond a limit is being taken down, and devices may say what they like."""
         self.going_safe = True
         self.limits.active = False
+
+    def begin_run_down(self) -> AxleSpeeds:
+        """The bench is safe after a stop: what comes is recorded, and changes no result of the run."""
+        self._run_down = AxleSpeeds(self._bench.streams, self._bench.loop.clock.now_s)
+        return self._run_down
+
+    @property
+    def running_down(self) -> bool:
+        """Whether what comes now was measured after a stop."""
+        return self._run_down is not None
 
     def _answer(self, reached: Range, text: str) -> None:
         """What is done when a limit is reached that is no trip, or an interlock is lost."""
@@ -139,6 +151,9 @@ class RunMonitoring:
                 self.zero.take(samples)
                 if not self.rows_finished:
                     self._recorder.take(samples)
+                if self._run_down is not None:
+                    self._run_down.take(samples)
+                    continue
                 self.limits.take(samples, now_s)
                 self.liveness.take(samples)
             self._bench.loop.keep_up()

@@ -16,7 +16,7 @@ const KINDS: Record<string, string> = {
 const EVENTS: Record<string, string> = {
   preflight: t("pre-flight check"), arm: t("drives enabled"), controller: t("controller"), speed: t("speed"), slip: t("slip"), vehicle: t("vehicle"), prompt: t("question"), segment: t("segment"), analysis: t("analysis"),
   hold: t("hold"), held: t("hold"), limit: t("limit reached"), pause: t("delay of the loop"), late: t("late samples"), missing: t("missing"), bus: t("bus"), replay: t("replay"),
-  emergency_stop: t("emergency stop"), failure: t("failure"), interrupt: t("ended early"), traceback: t("program fault"), end_steps: t("end steps"), safe_state: t("safe state"),
+  emergency_stop: t("emergency stop"), failure: t("failure"), interrupt: t("ended early"), traceback: t("program fault"), end_steps: t("end steps"), safe_state: t("safe state"), run_down: t("run-down"),
 };
 
 // What people and agents did, as the audit log has it.
