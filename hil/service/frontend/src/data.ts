@@ -1,7 +1,7 @@
 // What the service answers, kept while it is asked again; and work that may be refused.
 
 import { useCallback, useEffect, useRef, useState } from "preact/hooks";
-import { get } from "./api/client.ts";
+import { get, Refused } from "./api/client.ts";
 import { Store } from "./store.ts";
 
 export interface Asked<T> {
@@ -41,6 +41,9 @@ export function useData<T>(path: string | null, everyMs = 0): Asked<T> {
   const mine = found.path === path;
   return { data: mine ? found.data : null, error: mine ? found.error : null, loading: found.loading || !mine, again };
 }
+
+// Whether the service has answered that there is no such thing.
+export const isMissing = ({ error }: { error: Error | null }): boolean => error instanceof Refused && error.status === 404;
 
 // What was refused last, shown above every view until something else is done.
 export const refusal = new Store<Error | null>(null);

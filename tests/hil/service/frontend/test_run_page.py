@@ -114,3 +114,55 @@ def test_after_a_stop_the_panel_shows_no_old_values_and_no_time_left(
     expect(page.get_by_role("button", name="End the run")).to_have_count(0)
     expect(page.locator(".dials dd:not(.quiet)").first).to_contain_text("–")
     expect(page.get_by_text(re.compile("about .* left"))).to_have_count(0)
+
+
+def test_the_stop_is_of_the_runs_bench_also_after_its_end(page: playwright.Page, there: Served) -> None:
+    asking = there.queue("asking")
+    there.until(asking, lambda run: run["prompt"] is not None)
+    to(page, there, f"runs/{asking}")
+    stop = page.get_by_role("button", name=re.compile("^Emergency stop"))
+    expect(stop).to_have_text("Emergency stop sim only")
+    seen = page.evaluate_handle(
+        """() => { const seen = [], button = document.querySelector("button.stop");
+        new MutationObserver(() => seen.push(button.textContent)).observe(button,
+            { characterData: true, childList: true, subtree: true }); return seen; }"""
+    )
+    there.post(f"/runs/{asking}/answer", {"text": ""})
+    there.over(asking)
+    expect(page.locator("h1")).to_contain_text("pass")
+    expect(stop).to_have_text("Emergency stop sim only")
+    assert seen.json_value() == []  # not for a moment
+    page.get_by_role("link", name="Runs", exact=True).first.click()
+    expect(stop).to_have_text("Emergency stop all benches")
+
+
+def test_a_run_that_was_stopped_has_the_button_that_resets_the_stop(
+    page: playwright.Page, there: Served
+) -> None:
+    asking = there.queue("asking")
+    there.until(asking, lambda run: run["prompt"] is not None)
+    to(page, there, f"runs/{asking}")
+    page.get_by_role("button", name="Emergency stop sim only").click()
+    there.over(asking)
+    state = region(page, "State of sim")
+    expect(state).to_contain_text("emergency stop since")
+    refuse_hard_to_use(page)
+    state.get_by_role("button", name="It is safe: reset the emergency stop").click()
+    expect(state).to_have_count(0)
+    assert there.get("/benches/sim")["state"] == "free"
+
+
+def test_the_palette_has_the_stop_under_its_name_only(page: playwright.Page, there: Served) -> None:
+    to(page, there, "benches")
+    expect(heading(page, "Benches")).to_be_visible()
+    page.keyboard.press("Control+k")
+    page.keyboard.type("e")
+    offered = page.get_by_role("dialog").get_by_role("option")
+    expect(offered.first).to_be_visible()
+    expect(offered.filter(has_text="Emergency stop")).to_have_count(0)
+    page.keyboard.type("mergency")
+    chosen = page.get_by_role("dialog").locator("[aria-selected=true]")
+    expect(chosen).to_contain_text("Emergency stop all benches")
+    page.keyboard.press("Enter")
+    expect(page.locator("main")).to_contain_text("Emergency stop")
+    assert there.get("/benches/sim")["state"] == "emergency_stop"

@@ -20,6 +20,15 @@ test("every word has to be there, in any order", () => {
 });
 test("without words all are offered in their order, as many as fit", () => assert.equal(found(ENTRIES, "", 2)[0]?.name, "commissioning"));
 
+const STOP: Entry = { kind: "command", name: "Not-Halt", about: "alle Prüfstände", also: "command Emergency stop", byName: "Not-Halt Emergency stop" };
+const stopIn = (text: string) => found([...ENTRIES, STOP], text, 9).includes(STOP);
+
+test("a stop is found by its name only, and by no single letters", () => {
+  for (const text of ["stop", "emergency", "emer", "Emergency Stop", "not-halt", "halt", "Not-Halt"]) assert.ok(stopIn(text), text);
+  for (const text of ["", "e", "s", "st", "sto", "not", "e s", "command", "alle", "ergency", "emergency exit"]) assert.ok(!stopIn(text), text);
+  assert.ok(found([{ ...STOP, byName: "非常停止 Emergency stop" }], "非常", 9).length);
+});
+
 test("figures have the digits that can be read at a glance", () => {
   assert.deepEqual([figure(373.4, "N m"), figure(-12.34), figure(0), figure(null), figure(0.5, "1")], ["373\u00a0N m", "−12.3", "0.00", "–", "0.50"]);
   assert.equal(limitText(400, null, "N m"), "≤ 400\u00a0N m");

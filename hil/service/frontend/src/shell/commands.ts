@@ -5,7 +5,7 @@ import { chooseLanguage, LANGUAGES, type Language } from "../i18n/language.ts";
 import { t } from "../i18n/text.ts";
 import { chooseTheme, THEME_NAMES, THEMES } from "../theme.ts";
 import type { Entry } from "./matching.ts";
-import { benchInSight } from "./stop.tsx";
+import { stopScope } from "./stop.tsx";
 import { attempt } from "../data.ts";
 import { stopNow } from "../api/client.ts";
 import { signOut } from "./sign-in.tsx";
@@ -17,12 +17,12 @@ export const MENU = [
 ] as const;
 const MORE = [["bench-files", t("Bench files"), "Bench files"], ["glossary", t("Words of this page"), "Words of this page glossary help"]] as const; // beside the menu, which is full
 
-// Whoever cannot read the page's language finds their own here by its name.
-export const commands = (): Entry[] => [
+// `bench`: of the emergency stop, '' for all. Whoever cannot read the page's language finds their own here by its name.
+export const commands = (bench: string): Entry[] => [
   ...[...MENU, ...MORE].map(([view, name, also]) => ({ kind: t("page"), name, about: "", path: to.list(view), also: `page ${also}` })),
   { kind: t("page"), name: t("For the wall of a control room"), about: "", path: to.wall(), also: "page wall" },
   ...THEMES.map((theme) => ({ kind: t("command"), name: t("Colours: {theme}", { theme: THEME_NAMES[theme] }), about: t("light or dark"), act: () => chooseTheme(theme), also: `command Colours: ${theme}` })),
   ...Object.entries(LANGUAGES).map(([tag, name]) => ({ kind: t("command"), name: t("Language: {language}", { language: name }), about: "", act: () => chooseLanguage(tag as Language), also: `command Language: ${tag}` })),
-  { kind: t("command"), name: t("Emergency stop"), about: benchInSight.value || t("all benches"), act: () => void attempt(() => stopNow(benchInSight.value)), also: "command Emergency stop" },
+  { kind: t("command"), name: t("Emergency stop"), about: stopScope(bench), act: () => void attempt(() => stopNow(bench)), also: "command Emergency stop", byName: `${t("Emergency stop")} Emergency stop` },
   { kind: t("command"), name: t("Sign out"), about: "", act: () => void signOut(), also: "command Sign out" },
 ];

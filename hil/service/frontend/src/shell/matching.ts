@@ -5,6 +5,7 @@ export interface Entry {
   name: string;
   about: string; // in the reader's language, as the name is
   also?: string; // the name in English: who knows that finds it, too
+  byName?: string; // found only by words of this, long enough that nobody types them for something else
   path?: string;
   act?: () => void;
 }
@@ -18,6 +19,7 @@ export function found(entries: Entry[], text: string, most: number): Entry[] {
 
 // 0 where a name begins with every word; more the farther inside they stand; null where one is missing.
 function rankOf(entry: Entry, words: string[]): number | null {
+  if (entry.byName !== undefined && !isNamed(entry.byName.toLowerCase(), words)) return null;
   const name = entry.name.toLowerCase(), all = `${name} ${entry.about} ${entry.kind} ${entry.also ?? ""}`.toLowerCase();
   let rank = 0;
   for (const word of words) {
@@ -30,5 +32,10 @@ function rankOf(entry: Entry, words: string[]): number | null {
   }
   return rank;
 }
+
+const LEAST_LETTERS = 4, LEAST_SIGNS = 2; // "stop", "emer"; in Japanese two signs are a word
+
+const isNamed = (names: string, words: string[]): boolean =>
+  words.length > 0 && words.every((word) => beginsAWord(names, word) || names.split(" ").some((one) => one.startsWith(word))) && words.some((word) => word.length >= (/^[\x20-\u024f]+$/.test(word) ? LEAST_LETTERS : LEAST_SIGNS));
 
 const beginsAWord = (text: string, word: string): boolean => text.split(/[\s_.\-,]+/).some((one) => one.startsWith(word));

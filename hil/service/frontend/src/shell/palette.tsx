@@ -12,6 +12,7 @@ import { Store, useStore } from "../store.ts";
 import { kindInWords } from "../ui/kinds.ts";
 import { found, type Entry } from "./matching.ts";
 import { commands } from "./commands.ts";
+import { benchInSight } from "./stop.tsx";
 
 export const paletteOpen = new Store(false);
 const MOST = 12;
@@ -71,13 +72,14 @@ function Open(): JSX.Element {
 let known: Entry[] = []; // as the palette had them last: there at once when it is opened again
 
 function useEntries(): Entry[] {
-  const [entries, setEntries] = useState<Entry[]>(() => [...commands(), ...known]);
+  const [own] = useState(() => commands(benchInSight.value)); // of the bench that was in sight when it was opened
+  const [entries, setEntries] = useState<Entry[]>(() => [...own, ...known]);
   useEffect(() => {
     let open = true;
     const asked = [benches(), plans(), named("/models", t("model"), "model", to.model), named("/controllers", t("controller"), "controller", to.controller)];
     void Promise.all(asked.map((one) => one.catch(() => []))).then((all) => {
       known = all.flat();
-      if (open) setEntries([...commands(), ...known]);
+      if (open) setEntries([...own, ...known]);
     });
     return () => { open = false; };
   }, []);

@@ -4,7 +4,8 @@ import type { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { ask, post } from "../api/client.ts";
 import { to } from "../addresses.ts";
-import { attempt } from "../data.ts";
+import type { Bench, Run } from "../api/types.ts";
+import { attempt, useData } from "../data.ts";
 import { English } from "../i18n/english.tsx";
 import { t, tx } from "../i18n/text.ts";
 import { useLost, type BenchState } from "../live.ts";
@@ -48,12 +49,29 @@ export function Actions({ state, answers = true }: { state: BenchState; answers?
         {running && may("operator") && reached && !held && !stopped ? <button type="button" onClick={order("pause")}>{t("Pause")}</button> : null}
         {running && may("operator") && reached && held && !stopped ? <button type="button" class="main" onClick={order("resume")}>{t("Resume")}</button> : null}
         {running && may("operator") && !stopped ? <button type="button" onClick={order("abort")}>{t("End the run")}</button> : null}
-        {mayReset ? <button type="button" class="main" onClick={() => void attempt(() => post(`/benches/${name}/reset`))}>{resetText(nextIn(queue))}</button> : null}
+        {mayReset ? <ResetButton bench={bench} queue={queue} /> : null}
         {bench.away_since && may("engineer") ? <button type="button" onClick={release}>{t("Release from its agent")}</button> : null}
         {!bench.lease && may("operator") && (!bench.reserved_by || bench.reserved_by === me.name) ? <button type="button" onClick={() => void attempt(() => ask("PUT", `/benches/${name}/lease`, { for_s: 3600 }))}>{t("Reserve for an hour")}</button> : null}
         {bench.lease && may("operator") && mayRelease ? <button type="button" onClick={() => void attempt(() => ask("DELETE", `/benches/${name}/lease`))}>{t("End the reservation")}</button> : null}
       </div>
     </>
+  );
+}
+
+function ResetButton({ bench, queue }: { bench: Bench; queue: Run[] }): JSX.Element {
+  return <button type="button" class="main" onClick={() => void attempt(() => post(`/benches/${encodeURIComponent(bench.name)}/reset`))}>{resetText(nextIn(queue))}</button>;
+}
+
+// Where a run is shown that was stopped, and its bench still is.
+export function ResetOf({ bench }: { bench: Bench }): JSX.Element | null {
+  const stopped = bench.state === "emergency_stop", may = useMay();
+  const queue = useData<Run[]>(stopped ? `/benches/${encodeURIComponent(bench.name)}/queue` : null).data ?? [];
+  if (!stopped) return null;
+  return (
+    <section class="banner emergency_stop" aria-label={t("State of {bench}", { bench: bench.name })}>
+      <p>{bench.why ? <English>{bench.why}</English> : t("Emergency stop")}</p>
+      {bench.running ? <p>{t("The run is being ended.")}</p> : may("engineer") ? <div class="row"><ResetButton bench={bench} queue={queue} /></div> : <p>{t("When it is safe, an engineer resets the emergency stop.")}</p>}
+    </section>
   );
 }
 

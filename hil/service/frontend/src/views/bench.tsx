@@ -10,7 +10,6 @@ import { t, tx } from "../i18n/text.ts";
 import { useLive } from "../live.ts";
 import { Board } from "../plot/board.tsx";
 import { useMay, useMe } from "../session.ts";
-import { benchInSight } from "../shell/stop.tsx";
 import { useStore } from "../store.ts";
 import { Badge, linkTo, Moment, Scroll, Section, verdictOf } from "../ui/parts.tsx";
 import { Banner } from "./bench-banner.tsx";
@@ -28,7 +27,6 @@ export function BenchView({ bench }: { bench: string }): JSX.Element {
   const live = useLive(bench);
   const state = useStore(live.state);
   const may = useMay(), me = useMe();
-  useEffect(() => { benchInSight.value = bench; }, [bench]);
   const running = state?.running ?? null;
   return (
     <>

@@ -7,7 +7,6 @@ import { figure, limitText, roughly, wordsOf } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { t } from "../i18n/text.ts";
 import { useLive, type BenchState, type Live } from "../live.ts";
-import { benchInSight } from "../shell/stop.tsx";
 import { useStore } from "../store.ts";
 import { play, soundOf, soundOn, turnSound } from "../ui/sound.ts";
 import { Actions } from "./bench-banner.tsx";
@@ -22,7 +21,6 @@ const OLD_MS = 1500;
 export function Panel({ bench }: { bench: string }): JSX.Element {
   const live = useLive(bench, SHOWN);
   const state = useStore(live.state);
-  useEffect(() => { benchInSight.value = bench; }, [bench]);
   useSounds(state);
   return (
     <div class="panel">

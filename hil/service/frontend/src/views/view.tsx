@@ -1,11 +1,11 @@
 // Which view an address shows.
 
 import type { ComponentChildren, JSX } from "preact";
-import { Refused } from "../api/client.ts";
 import type { Bench } from "../api/types.ts";
 import { to, type Place } from "../addresses.ts";
-import { useData } from "../data.ts";
+import { isMissing, useData } from "../data.ts";
 import { t } from "../i18n/text.ts";
+import { useStopOf } from "../shell/stop.tsx";
 import { Heading } from "../ui/parts.tsx";
 import { Audit } from "./audit.tsx";
 import { BenchView } from "./bench.tsx";
@@ -77,7 +77,9 @@ function Missing({ path }: { path: string }): JSX.Element {
 // A wrong name is no alarm: only a bench that there is gets a live view and a stop of its own.
 function KnownBench({ bench, children }: { bench: string; children: ComponentChildren }): JSX.Element {
   const found = useData<Bench>(`/benches/${encodeURIComponent(bench)}`);
-  if (found.error instanceof Refused && found.error.status === 404) {
+  const missing = isMissing(found);
+  useStopOf(bench, missing ? false : found.loading && !found.data ? null : true);
+  if (missing) {
     return <><Heading>{t("There is no bench '{bench}'", { bench })}</Heading><p>{t("The service has no bench of this name.")} <a href={to.list("benches")}>{t("Benches")}</a></p></>;
   }
   return found.loading && !found.data ? <p class="quiet">{t("Asking the service …")}</p> : <>{children}</>;

@@ -1,11 +1,10 @@
 // A run, under way and afterwards: one view, over what is measured or over what was recorded.
 
 import type { JSX } from "preact";
-import { useEffect } from "preact/hooks";
 import { post } from "../../api/client.ts";
-import type { Run, RunView as View } from "../../api/types.ts";
+import type { Bench, Run, RunView as View } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
-import { attempt, useData } from "../../data.ts";
+import { attempt, isMissing, useData } from "../../data.ts";
 import { figure } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
 import { t, tx } from "../../i18n/text.ts";
@@ -13,10 +12,10 @@ import { useLive } from "../../live.ts";
 import { Board } from "../../plot/board.tsx";
 import { go } from "../../router.ts";
 import { useMay } from "../../session.ts";
-import { benchInSight } from "../../shell/stop.tsx";
+import { useStopOf } from "../../shell/stop.tsx";
 import { useStore } from "../../store.ts";
 import { Badge, Facts, Heading, Loaded, Moment, Section, verdictOf } from "../../ui/parts.tsx";
-import { Banner } from "../bench-banner.tsx";
+import { Banner, ResetOf } from "../bench-banner.tsx";
 import { againWith } from "../plans/start-values.ts";
 import { Criteria } from "../criteria.tsx";
 import { Notes } from "./notes.tsx";
@@ -31,16 +30,17 @@ const AGAIN_MS = 2000;
 
 export function RunView({ run: id }: { run: number }): JSX.Element {
   const run = useData<Run>(`/runs/${id}`, AGAIN_MS);
-  return <Loaded of={run} what={t("run {run}", { run: id })}>{(found) => <Found key={found.state} run={found} />}</Loaded>;
+  const name = run.data?.bench ?? "", bench = useData<Bench>(name ? `/benches/${encodeURIComponent(name)}` : null, AGAIN_MS);
+  useStopOf(name, !name ? null : isMissing(bench) ? false : bench.loading && !bench.data ? null : true);
+  return <Loaded of={run} what={t("run {run}", { run: id })}>{(found) => <Found key={found.state} run={found} bench={bench.data} />}</Loaded>;
 }
 
-function Found({ run }: { run: Run }): JSX.Element {
+function Found({ run, bench }: { run: Run; bench: Bench | null }): JSX.Element {
   const isLive = run.state === "running", isOver = OVER.includes(run.state);
   const recorded = isOver && (run.files ?? []).includes("recording.mcap");
   const view = useData<View>(isLive || recorded ? `/runs/${run.id}/view` : null, isLive ? AGAIN_MS : 0);
   const live = useLive(isLive ? run.bench : null);
   const state = useStore(live.state), decided = useStore(live.criteria);
-  useEffect(() => { benchInSight.value = isOver ? "" : run.bench; }, [isOver, run.bench]);
   const criteria = isLive ? (decided?.run === run.id ? decided.criteria : []) : view.data?.criteria ?? [];
   return (
     <>
@@ -48,6 +48,7 @@ function Found({ run }: { run: Run }): JSX.Element {
       {isLive && state?.running?.id === run.id ? <Banner state={state} /> : null}
       {WAITING.includes(run.state) ? <WhyItWaits run={run} /> : null}
       {isOver ? <Outcome run={run} view={view.data} /> : null}
+      {isOver && !isPassed(run) && bench ? <ResetOf bench={bench} /> : null}
       <RunFacts run={run} />
       <RunActions run={run} />
       {view.data ? (
