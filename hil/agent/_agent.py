@@ -223,7 +223,7 @@ class _Agent:
         if run.ending is None:
             end = await self._ended(run, bench)
             logger.info("run %d ended with code %s: %s", run.id, end.exit_code, end.reason)
-            await _written(lambda: run.end(_ending(end)))
+            await _written(lambda: run.end(_ending(end), end.at))
         if bench is not None:
             bench.running, bench.left = None, False
         await streaming

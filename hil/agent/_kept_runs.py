@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import datetime
+import os
 import logging
 import shutil
 import time
@@ -38,13 +40,17 @@ class KeptRun:
         self.taken = taken.model_copy(update={"plan_source": str(source)})
         self.id, self.bench = taken.data.id, taken.data.bench
 
-    def end(self, ending: RunEnding) -> None:
-        """Keep how it ended.
+    def end(self, ending: RunEnding, at: datetime.datetime | None = None) -> None:
+        """Keep how it ended, and when if that was not just now.
 
         Raises:
             HilError: it cannot be written.
         """
-        write_atomically(self.folder / _ENDING, ending.model_dump_json())
+        place = self.folder / _ENDING
+        write_atomically(place, ending.model_dump_json())
+        if at is not None:
+            with contextlib.suppress(OSError):  # then it ended when it was looked at
+                os.utime(place, (at.timestamp(), at.timestamp()))
         self.ending = ending
 
     def files(self) -> list[FileMade]:

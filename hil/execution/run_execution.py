@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import datetime
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -58,13 +59,14 @@ class RunningRun:
 
 @dataclass(frozen=True)
 class RunEnd:
-    """How a run ended; `queued` if nothing has happened and it is to wait again."""
+    """How a run ended; `queued` if nothing has happened and it is to wait again; `at` if that was long ago."""
 
     state: Literal["ended", "interrupted", "queued"]
     exit_code: int | None = None
     result: RunResult | None = None
     reason: str = ""
     dut: str = ""
+    at: datetime.datetime | None = None
 
 
 class RunExecution(RunningRun):
@@ -141,7 +143,15 @@ def end_of_left(folder: Path, who: str) -> RunEnd:
     reason = (_KEPT if (folder / RECORDING).exists() else _NOTHING).format(who=who)
     if result is not None and result.reason not in ("", GONE_REASON):
         reason += f": {result.reason}"
-    return RunEnd("interrupted", result=result, reason=reason)
+    return RunEnd("interrupted", result=result, reason=reason, at=_last_written(folder))
+
+
+def _last_written(folder: Path) -> datetime.datetime | None:
+    """When something was last written to a run's folder; None if nothing was."""
+    found: list[float] = []
+    with contextlib.suppress(OSError):  # a file that is removed at this moment
+        found += [path.stat().st_mtime for path in folder.rglob("*") if path.is_file()]
+    return datetime.datetime.fromtimestamp(max(found), datetime.UTC) if found else None
 
 
 def _request_of(taken: TakenRun, bench: Bench, folder: Path) -> RunAsked:

@@ -282,6 +282,12 @@ class Queue:
             self._runs.put_back(run.id)
             return
         self._runs.end(
-            run.id, end.state, exit_code=end.exit_code, result=end.result, reason=end.reason, dut=end.dut
+            run.id,
+            end.state,
+            exit_code=end.exit_code,
+            result=end.result,
+            reason=end.reason,
+            dut=end.dut,
+            at=end.at,
         )
         logger.info("run %d ended on %s with code %s", run.id, run.bench, end.exit_code)

@@ -199,10 +199,17 @@ class RunStore:
         result: RunResult | None = None,
         reason: str = "",
         dut: str = "",
+        at: datetime.datetime | None = None,
     ) -> bool:
-        """Write how a running run ended, with its criteria; false if that was written before."""
+        """Write how a running run ended, with its criteria; false if that was written before.
+
+        Args:
+            at: when it ended, if that is known and was not just now.
+        """
         with self._transaction() as session:
             changes = _ending(state, exit_code, result, reason)
+            if at is not None:
+                changes["ended_at"] = min(at, now())
             return _ended(session, run, ("running",), changes, result, dut)
 
     def criteria(self, bench: str, plan: str, dut: str | None, most: int) -> list[tuple[str, TrendPoint]]:

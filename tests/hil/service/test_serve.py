@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import datetime
 import itertools
 import json
+import os
 import socket
 import time
 from pathlib import Path
@@ -12,6 +14,8 @@ import pytest
 
 from hil.core.errors import BadInputError, BenchError
 from hil.core.result import RunResult
+from hil.execution.data_folder import folder_of
+from hil.execution.run_process import alive_in
 from hil.service.serving import ServeRequest, make_token, serve
 from tests.hil.service.served import ASKING, SHORT, RefusedError, Served, served
 
@@ -116,8 +120,16 @@ def test_a_killed_service_loses_nothing_and_runs_nothing_twice(tmp_path: Path) -
         service.until(cut, lambda run: run["state"] == "running" and run["share"] is not None)
         service.process.kill()
         service.process.wait(10)
+    folder = folder_of(data / "runs", cut)
+    while alive_in(folder):
+        time.sleep(0.05)
+    hour_ago_s = time.time() - 3600.0
+    for path in folder.rglob("*"):
+        os.utime(path, (hour_ago_s, hour_ago_s))
     with served(data, state=state) as service:
         over = service.over(cut)
+        ended_at = datetime.datetime.fromisoformat(over["ended_at"]).timestamp()
+        assert ended_at == pytest.approx(hour_ago_s, abs=1.0)  # not the moment of the restart
         assert (over["state"], over["safe_state"]) == ("interrupted", "confirmed")
         assert over["reason"] == "the service ended during the run; data measured before that is kept"
         assert "recording.mcap" in over["files"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import datetime
 import http.client
 import itertools
 import threading
@@ -133,6 +134,13 @@ def test_a_run_is_on_the_disk_before_it_is_begun_and_until_the_service_has_it(tm
     assert (started.folder / "result.json").exists(), "for 30 days"
     KeptRuns(tmp_path, 0.0).clear()
     assert not started.folder.exists()
+
+
+def test_a_run_that_ended_with_its_agent_is_reported_with_the_moment_of_its_end(tmp_path: Path) -> None:
+    left = KeptRuns(tmp_path, 30.0).begin(_taken(3))
+    left.end(RunEnding(state="interrupted"), datetime.datetime(2020, 1, 1, tzinfo=datetime.UTC))
+    (found,) = KeptRuns(tmp_path, 30.0).pending()
+    assert found.ending_with([]).ago_s > 5 * 365 * 24 * 3600.0
 
 
 def test_a_run_that_the_service_will_not_have_stays_and_one_of_its_number_takes_another_place(

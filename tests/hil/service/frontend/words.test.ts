@@ -26,7 +26,7 @@ const stopIn = (text: string) => found([...ENTRIES, STOP], text, 9).includes(STO
 test("a stop is found by its name only, and by no single letters", () => {
   for (const text of ["stop", "emergency", "emer", "Emergency Stop", "not-halt", "halt", "Not-Halt"]) assert.ok(stopIn(text), text);
   for (const text of ["", "e", "s", "st", "sto", "not", "e s", "command", "alle", "ergency", "emergency exit"]) assert.ok(!stopIn(text), text);
-  assert.ok(found([{ ...STOP, byName: "非常停止 Emergency stop" }], "非常", 9).length);
+  assert.ok(found([{ ...STOP, name: "非常停止", byName: "非常停止 Emergency stop" }], "非常", 9).length);
 });
 
 test("figures have the digits that can be read at a glance", () => {
