@@ -8,8 +8,8 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import datetime
-import os
 import logging
+import os
 import shutil
 import time
 from collections.abc import Callable, Iterator

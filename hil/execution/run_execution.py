@@ -59,7 +59,7 @@ class RunningRun:
 
 @dataclass(frozen=True)
 class RunEnd:
-    """How a run ended; `queued` if nothing has happened and it is to wait again; `at` if that was long ago."""
+    """How a run ended, and when if not just now; `queued` if nothing has happened and it is to wait again."""
 
     state: Literal["ended", "interrupted", "queued"]
     exit_code: int | None = None

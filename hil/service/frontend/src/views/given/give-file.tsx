@@ -9,6 +9,7 @@ import { DraftNotice } from "../../editor/draft-notice.tsx";
 import { useDraft } from "../../editor/use-draft.ts";
 import type { VersionedKind } from "../../editor/versions.tsx";
 import { t } from "../../i18n/text.ts";
+import { emptyFile } from "../recordings/send-recording.ts";
 
 interface Options {
   kind: VersionedKind;
@@ -21,9 +22,17 @@ interface Options {
 export function GiveFile({ kind, submit, path, ending, onGiven }: Options): JSX.Element {
   const draft = useDraft(`give/${kind}`, { name: "", text: "" }, (one) => one.text === ""), { name, text } = draft.value;
   const [theirs, setTheirs] = useState<Theirs | null>(null);
-  const take = async (file: File | undefined) => {
+  const take = async (field: HTMLInputElement) => {
+    const file = field.files?.[0];
     if (!file) return;
-    draft.set({ text: await file.text(), name: name || file.name.replace(/\.[^.]+$/, "").replace(/[^A-Za-z0-9_.-]/g, "-") });
+    const text = await file.text();
+    if (!text.trim()) {
+      field.value = ""; // as if it had never been chosen
+      void attempt(() => { throw emptyFile(file.name); });
+      return;
+    }
+    await attempt(() => {}); // what was refused before is over
+    draft.set({ text, name: name || file.name.replace(/\.[^.]+$/, "").replace(/[^A-Za-z0-9_.-]/g, "-") });
   };
   const give = (insteadOf: string) => attempt(async () => {
     const file = `${path}/${encodeURIComponent(name)}`;
@@ -40,7 +49,7 @@ export function GiveFile({ kind, submit, path, ending, onGiven }: Options): JSX.
       <DraftNotice of={draft} />
       {theirs ? <Conflict theirs={theirs} mine={text} keep={{ name: t("Keep mine as the newer version"), do: () => void give(theirs.tag) }} take={() => seen(theirs)} /> : null}
       <div class="row">
-        <label class="field">{t("File ({ending})", { ending })}<input type="file" accept={`${ending},text/plain`} onChange={(event) => void take(event.currentTarget.files?.[0])} /></label>
+        <label class="field">{t("File ({ending})", { ending })}<input type="file" accept={`${ending},text/plain`} onChange={(event) => void take(event.currentTarget)} /></label>
         <label class="field">{t("Name")}<input required maxLength={64} pattern="[A-Za-z0-9][A-Za-z0-9_.\-]*" autocomplete="off" value={name} onInput={(event) => draft.set({ text, name: event.currentTarget.value })} /></label>
         <button type="submit" class="main" disabled={!name || !text}>{submit}</button>
       </div>

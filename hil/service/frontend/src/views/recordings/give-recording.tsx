@@ -7,7 +7,7 @@ import { attempt } from "../../data.ts";
 import { percent } from "../../format.ts";
 import { t } from "../../i18n/text.ts";
 import { useMe } from "../../session.ts";
-import { columnsFrom, sendRecording } from "./send-recording.ts";
+import { columnsFrom, emptyFile, sendRecording } from "./send-recording.ts";
 
 const ENDINGS = ".mcap,.mf4,.csv,.txt,.tsv,.lvm,.ascii,.parquet,.mat,.h5,.hdf5,.hdf,.tdms";
 
@@ -33,10 +33,16 @@ export function GiveRecording({ onGiven }: { onGiven: (recording: Recording) => 
     setShare(null);
     if (given) onGiven(given);
   };
+  const choose = (field: HTMLInputElement) => {
+    const chosen = field.files?.[0] ?? null, isEmpty = chosen !== null && chosen.size === 0;
+    if (isEmpty) field.value = ""; // as if it had never been chosen
+    setFile(isEmpty ? null : chosen);
+    void attempt(() => { if (isEmpty) throw emptyFile(chosen.name); });
+  };
   const pause = () => { control.current?.abort(); setShare(null); };
   return (
     <form class="card" onSubmit={(event) => void give(event)}>
-      <label class="field">{t("File of a recording")}<input type="file" required disabled={share !== null} accept={ENDINGS} onChange={(event) => setFile(event.currentTarget.files?.[0] ?? null)} /></label>
+      <label class="field">{t("File of a recording")}<input type="file" required disabled={share !== null} accept={ENDINGS} onChange={(event) => choose(event.currentTarget)} /></label>
       <ColumnsField value={columns} onChange={setColumns} />
       <div class="row level">
         <button type="submit" class="main" disabled={!file || share !== null}>{t("Give the recording")}</button>

@@ -17,6 +17,8 @@ export const nameFor = (file: string): string =>
 // What is written into the form, a column a line.
 export const columnsFrom = (text: string): string[] => text.split("\n").map((line) => line.trim()).filter(Boolean);
 
+export const emptyFile = (name: string): Error => new Error(t("The file {name} is empty and was not taken. Choose one with something in it.", { name }));
+
 export interface Sending {
   file: File;
   columns: string[];
@@ -26,7 +28,7 @@ export interface Sending {
 }
 
 export async function sendRecording({ file, columns, me, signal, onShare }: Sending): Promise<Recording> {
-  if (!file.size) throw new Error(t("The file {name} is empty. Choose one with a recording in it.", { name: file.name }));
+  if (!file.size) throw emptyFile(file.name);
   const name = nameFor(file.name);
   const one = await begun(name, file.size, columns, me);
   const whole = new Sha256();

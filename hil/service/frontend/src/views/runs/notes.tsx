@@ -6,17 +6,26 @@ import { ask, post } from "../../api/client.ts";
 import type { Note, RunChoices, RunNotes } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
+import { DraftNotice } from "../../editor/draft-notice.tsx";
+import { useDraft } from "../../editor/use-draft.ts";
 import { t } from "../../i18n/text.ts";
 import { useMay, useMe } from "../../session.ts";
 import { Moment, Section, Written } from "../../ui/parts.tsx";
+import { isTooLong, TooLong } from "../../ui/too-long.tsx";
 
 const AGAIN_MS = 5000;
-const TAG = "[\\p{L}\\p{N}][\\p{L}\\p{M}\\p{N}_.:\\-]{0,39}"; // letters and digits of any script
+const TAG = "[\\p{L}\\p{N}][\\p{L}\\p{M}\\p{N}_.:\\-]*"; // letters and digits of any script
+const LONGEST_TAG = 40, LONGEST_NOTE = 4000;
 
 export function Notes({ run }: { run: number }): JSX.Element {
   const path = `/runs/${run}`, found = useData<RunNotes>(`${path}/notes`, AGAIN_MS), may = useMay();
   const { tags, notes } = found.data ?? { tags: [], notes: [] };
-  const change = (work: () => Promise<unknown>) => attempt(work).then(found.again);
+  // Whether it was taken: what was refused stays in its field.
+  const change = async (work: () => Promise<unknown>): Promise<boolean> => {
+    const taken = await attempt(() => work().then(() => true));
+    found.again();
+    return taken ?? false;
+  };
   if (!may("operator") && !tags.length && !notes.length) return <></>;
   return (
     <Section title={t("Tags and notes")} label="notes">
@@ -29,22 +38,23 @@ export function Notes({ run }: { run: number }): JSX.Element {
         {may("operator") ? <AddTag onAdd={(tag) => change(() => ask("PUT", `${path}/tags/${encodeURIComponent(tag)}`))} /> : null}
       </div>
       {notes.map((note) => <NoteShown key={note.id} note={note} onRemove={() => void change(() => ask("DELETE", `${path}/notes/${note.id}`))} />)}
-      {may("operator") ? <AddNote onAdd={(text) => change(() => post(`${path}/notes`, { text }))} /> : null}
+      {may("operator") ? <AddNote run={run} onAdd={(text) => change(() => post(`${path}/notes`, { text }))} /> : null}
     </Section>
   );
 }
 
-function AddTag({ onAdd }: { onAdd: (tag: string) => Promise<unknown> }): JSX.Element {
+function AddTag({ onAdd }: { onAdd: (tag: string) => Promise<boolean> }): JSX.Element {
   const [tag, setTag] = useState(""), choices = useData<RunChoices>("/run-list/choices");
   const add = (event: Event) => {
     event.preventDefault();
-    void onAdd(tag).then(() => setTag(""));
+    void onAdd(tag).then((taken) => { if (taken) setTag(""); });
   };
   return (
     <form class="row level" onSubmit={add}>
-      <label>{t("Tag")}{" "}<input list="known-tags" required pattern={TAG} title={t("letters, digits, _ . : and -")} maxLength={40} size={14} autocomplete="off" value={tag} onInput={(event) => setTag(event.currentTarget.value)} /></label>
+      <label>{t("Tag")}{" "}<input list="known-tags" required pattern={TAG} title={t("letters, digits, _ . : and -")} size={14} autocomplete="off" value={tag} onInput={(event) => setTag(event.currentTarget.value)} /></label>
       <datalist id="known-tags">{(choices.data?.tags ?? []).map((one) => <option key={one} value={one} />)}</datalist>
-      <button type="submit">{t("Add")}</button>
+      <button type="submit" disabled={isTooLong(tag, LONGEST_TAG)}>{t("Add")}</button>
+      <TooLong text={tag} most={LONGEST_TAG} />
     </form>
   );
 }
@@ -61,16 +71,18 @@ function NoteShown({ note, onRemove }: { note: Note; onRemove: () => void }): JS
   );
 }
 
-function AddNote({ onAdd }: { onAdd: (text: string) => Promise<unknown> }): JSX.Element {
-  const [text, setText] = useState("");
+function AddNote({ run, onAdd }: { run: number; onAdd: (text: string) => Promise<boolean> }): JSX.Element {
+  const draft = useDraft(`note/${run}`, "", (typed) => !typed.trim()), text = draft.value;
   const add = (event: Event) => {
     event.preventDefault();
-    void onAdd(text).then(() => setText(""));
+    void onAdd(text).then((taken) => { if (taken) draft.discard(); });
   };
   return (
     <form onSubmit={add}>
-      <label class="field">{t("Note")}<textarea class="prose" rows={2} maxLength={4000} value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
-      <button type="submit" disabled={!text.trim()}>{t("Add the note")}</button>
+      <DraftNotice of={draft} />
+      <label class="field">{t("Note")}<textarea class="prose" rows={2} value={text} onInput={(event) => draft.set(event.currentTarget.value)} /></label>
+      <TooLong text={text} most={LONGEST_NOTE} />
+      <button type="submit" disabled={!text.trim() || isTooLong(text, LONGEST_NOTE)}>{t("Add the note")}</button>
     </form>
   );
 }

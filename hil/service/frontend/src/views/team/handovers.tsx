@@ -5,14 +5,18 @@ import { useState } from "preact/hooks";
 import { post } from "../../api/client.ts";
 import type { Handover } from "../../api/types.ts";
 import { attempt, useData } from "../../data.ts";
+import { DraftNotice } from "../../editor/draft-notice.tsx";
+import { useDraft } from "../../editor/use-draft.ts";
 import { dayText } from "../../format.ts";
 import { t, tx } from "../../i18n/text.ts";
 import { useMay } from "../../session.ts";
 import { Moment, Section, Written } from "../../ui/parts.tsx";
+import { isTooLong, TooLong } from "../../ui/too-long.tsx";
 import { dayOf, shiftAt, spanAround, type Shift } from "./local-times.ts";
 
 const AGAIN_MS = 5000;
 const MOST = 50;
+const LONGEST = 4000;
 
 const SHIFTS: Record<Shift, () => string> = {
   early: () => t("early shift"), day: () => t("day shift"), late: () => t("late shift"), night: () => t("night shift"),
@@ -50,16 +54,17 @@ function Note({ note }: { note: Handover }): JSX.Element {
 
 function Form({ bench, onDone }: { bench: string; onDone: () => void }): JSX.Element {
   const [day, setDay] = useState(() => dayOf(new Date())), [shift, setShift] = useState<Shift>(() => shiftAt(new Date()));
-  const [text, setText] = useState("");
+  const draft = useDraft(`handover/${bench}`, "", (typed) => !typed.trim()), text = draft.value;
   const add = async (event: Event) => {
     event.preventDefault();
     if (await attempt(() => post<Handover>(pathOf(bench), { day, shift, text }))) {
-      setText("");
+      draft.discard();
       onDone();
     }
   };
   return (
     <form onSubmit={(event) => void add(event)}>
+      <DraftNotice of={draft} />
       <div class="row">
         <label class="field">{t("Day")} <input type="date" required min={dayOf(spanAround(new Date())[0])} max={dayOf(spanAround(new Date())[1])} value={day} onInput={(event) => setDay(event.currentTarget.value)} /></label>
         <label class="field">{t("Shift")}
@@ -68,8 +73,9 @@ function Form({ bench, onDone }: { bench: string; onDone: () => void }): JSX.Ele
           </select>
         </label>
       </div>
-      <label class="field">{t("Note for the next shift")}<textarea class="prose" rows={4} maxLength={4000} value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
-      <button type="submit" disabled={!text.trim()}>{t("Leave the note")}</button>
+      <label class="field">{t("Note for the next shift")}<textarea class="prose" rows={4} value={text} onInput={(event) => draft.set(event.currentTarget.value)} /></label>
+      <TooLong text={text} most={LONGEST} />
+      <button type="submit" disabled={!text.trim() || isTooLong(text, LONGEST)}>{t("Leave the note")}</button>
     </form>
   );
 }
