@@ -185,6 +185,7 @@ class BenchData(_Data):
     lease: str = Field("", description="user who has it for a while from now on")
     lease_until: datetime.datetime | None = Field(None, description="when that ends")
     reserved_by: str = Field("", description="user whose reservation is under way")
+    reserved_until: datetime.datetime | None = Field(None, description="when that reservation ends")
     machine: str = Field("", description="machine of its agent; '' for a bench of the service")
     stop_confirmed: bool = Field(True, description="false while an agent has not confirmed an emergency stop")
     away_since: datetime.datetime | None = Field(None, description="time of the last report of its agent")

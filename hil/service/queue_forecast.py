@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime
 from typing import TYPE_CHECKING
 
-from hil.api_schemas.api import RunData
+from hil.api_schemas.api import ReservationData, RunData
 from hil.service.expected_times import Expected, end_of
 
 if TYPE_CHECKING:
@@ -39,16 +39,16 @@ class QueueForecast:
         found = self._service.turns.expected(bench, free_at, _MOST_SHOWN)
         return [_with(run, found.get(run.id, Expected())) for run in runs]
 
-    def reserved_by(self, bench: str) -> str:
-        """Whose reservation of a bench is under way; '' if no one's is."""
+    def reservation(self, bench: str) -> ReservationData | None:
+        """The reservation of a bench that is under way."""
         now = datetime.datetime.now(datetime.UTC)
-        present = (one.who for one in self._service.reservations.of(bench) if one.begins <= now)
-        return next(present, "")
+        return next((one for one in self._service.reservations.of(bench) if one.begins <= now), None)
 
     def show_reservations(self) -> None:
         """Have benches shown anew of which a reservation begins or is over."""
         for bench in list(self._service.benches):
-            present = self.reserved_by(bench)
+            found = self.reservation(bench)
+            present = found.who if found is not None else ""
             if self._shown.get(bench, "") != present:
                 self._shown[bench] = present
                 self._service.changed(bench)

@@ -21,6 +21,7 @@ from hil.api_schemas.api import (
     ForecastData,
     LeaseData,
     Me,
+    ReservationData,
     RunData,
     RunState,
 )
@@ -97,7 +98,7 @@ class Waiting:
     runs: list[RunData] = field(default_factory=list)
     count: int = 0
     lease: LeaseData | None = None
-    reserved_by: str = ""
+    reservation: ReservationData | None = None
 
 
 class Service:
@@ -280,7 +281,8 @@ class Service:
             units=bench.units,
             lease=waiting.lease.holder if waiting.lease else "",
             lease_until=waiting.lease.until if waiting.lease else None,
-            reserved_by=waiting.reserved_by,
+            reserved_by=waiting.reservation.who if waiting.reservation else "",
+            reserved_until=waiting.reservation.ends if waiting.reservation else None,
             machine=agent.machine if agent else "",
             stop_confirmed=not (isinstance(bench, RemoteBench) and bench.stop_by),
             away_since=agent.heard_at if agent and agent.away else None,
@@ -295,8 +297,8 @@ class Service:
             )
             found.sort(key=lambda run: (-run.priority, run.id))
             found = self.queue_forecast.of_queue(bench, found)
-            whose = self.queue_forecast.reserved_by(bench)
-            self._waiting[bench] = Waiting(found, self.runs.waiting(bench), lease, whose)
+            reserved = self.queue_forecast.reservation(bench)
+            self._waiting[bench] = Waiting(found, self.runs.waiting(bench), lease, reserved)
         return self._waiting[bench]
 
     def with_progress(self, run: RunData) -> RunData:

@@ -61,6 +61,7 @@ export function App(): JSX.Element {
 function Refusal(): JSX.Element | null {
   const error = useStore(refusal);
   if (!error) return null;
-  const fix = error instanceof Refused ? error.fix : "";
-  return <p class="alarm" role="alert"><English>{fix ? `${error.message}\n${fix}` : error.message}</English></p>;
+  if (!(error instanceof Refused)) return <p class="alarm" role="alert"><English>{error.message}</English></p>;
+  // What is wrong and what to do are sentences of their own, each in the reader's language where it is known.
+  return <p class="alarm" role="alert">{error.where ? `${error.where}: ` : ""}<English>{error.what}</English>{error.fix ? <>{"\n"}<English>{error.fix}</English></> : null}</p>;
 }

@@ -69,6 +69,12 @@ export const clockTime = (ms: number): string => times.format(new Date(ms));
 
 export const moment = (iso: string): string => moments.format(new Date(iso));
 
+const hours = new Intl.DateTimeFormat(LOCALE, { timeStyle: "short" });
+
+// A moment that is near: of today, the time alone.
+export const nearMoment = (iso: string, now = new Date()): string =>
+  (new Date(iso).toDateString() === now.toDateString() ? hours : moments).format(new Date(iso));
+
 const days = new Intl.DateTimeFormat(LOCALE, { dateStyle: "medium", timeZone: "UTC" });
 
 // A day without a time, as it is in every zone.

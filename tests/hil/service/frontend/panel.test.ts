@@ -5,7 +5,7 @@ import test from "node:test";
 import type { Bench, Run } from "../../../../hil/service/frontend/src/api/types.ts";
 import type { BenchState } from "../../../../hil/service/frontend/src/live.ts";
 import { soundOf } from "../../../../hil/service/frontend/src/ui/sound.ts";
-import { aboutBench, leftOf, nextOf, wordOf } from "../../../../hil/service/frontend/src/views/bench-words.ts";
+import { aboutBench, headlineOf, leftOf, nextOf, wallWordOf, wordOf } from "../../../../hil/service/frontend/src/views/bench-words.ts";
 
 const RUN = { id: 7, plan: "steps", title: "Steps", requested_by: "anna", doing: "tip_in", share: 0.25, state: "running", started_at: "2026-11-28T10:00:00Z" } as Run;
 const QUESTION = { text: "Is the cage shut?", answer_by: "2026-11-28T10:10:00Z", picture: "" };
@@ -34,10 +34,15 @@ test("a run that waits for somebody's reservation is not next while another may 
   assert.equal(nextOf(stateOf("free", null, [held])), "Next: Steps, by anna");
 });
 
-test("who has a bench by a reservation under way is named as who has it for an hour", () => {
-  const bench = stateOf("free").bench;
-  assert.equal(aboutBench({ ...bench, reserved_by: "chen" }, "Axle 1"), "Axle 1, reserved by chen");
-  assert.equal(aboutBench({ ...bench, lease: "anna" }, "Axle 1"), "Axle 1, reserved by anna");
+test("a bench that is reserved says for whom and until when; while it is used, who has it stands beside its title", () => {
+  const bench = stateOf("free").bench, ends = "2020-01-02T12:00:00Z";
+  assert.match(headlineOf({ ...bench, reserved_by: "chen", reserved_until: ends }, null), /^Reserved for chen until .*2020/);
+  assert.match(wordOf({ ...bench, lease: "anna", lease_until: ends, reserved_by: "chen" }, null), /^Reserved for anna until /);
+  assert.equal(headlineOf({ ...bench, lease: "anna" }, null), "Reserved for anna");
+  assert.equal(wallWordOf({ ...bench, lease: "anna" }, null), "Reserved");
+  assert.equal(aboutBench({ ...bench, lease: "anna" }, "Axle 1"), "Axle 1");
+  assert.equal(aboutBench({ ...bench, state: "running", reserved_by: "chen" }, "Axle 1"), "Axle 1, reserved by chen");
+  assert.equal(headlineOf(bench, null), "Free");
 });
 
 test("what is left is as long as what was, by their shares", () => {

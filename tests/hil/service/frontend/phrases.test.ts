@@ -2,6 +2,8 @@
 
 import assert from "node:assert/strict";
 import test from "node:test";
+import { moment } from "../../../../hil/service/frontend/src/format.ts";
+import { withLocalMoments } from "../../../../hil/service/frontend/src/i18n/local-moments.ts";
 import { translated } from "../../../../hil/service/frontend/src/i18n/phrases.ts";
 
 const KNOWN = [
@@ -9,7 +11,8 @@ const KNOWN = [
   "gain_0kmh begins", "gain_0kmh ends", "gain_0kmh was stopped", "confirmed by RMCU and dynos", "held, torque off, the dynos hold their speed: oil is hot", "resumes after 1.5 s: well again",
   "the bench loop was delayed by 0.2 s", "executed: ramp_down; the wheels turn at 0.08 rad/s, the RMCU is in 'off'", "cancelled by anna", "stopped by the operator", "beginning",
   "the service ended during the run; data measured before that is kept", "the agent ended before the recording started; the run can be queued again", "no answer to 'Is the cage shut?' within 600 s",
-  "run 3 of an earlier service process is being ended",
+  "run 3 of an earlier service process is being ended", "the axle runs down", "a second person approves it", "another user holds the bench", "wait until it is released", "choose another time", "run 3 is finished", "run 4 is no longer queued",
+  "the reservation is anna's", "the note is anna's", "ask an engineer", "there is no bench 'sim'", "segment 's' was not run", "segment 's' was stopped after 0.5 s", "anna has reserved the bench from 2026-11-28 15:44 UTC to 2026-11-28 17:14 UTC: axle 7",
 ];
 
 for (const text of KNOWN) test(`known: ${text}`, () => assert.equal(translated(text), text));
@@ -20,4 +23,20 @@ test("of an emergency stop it stays when and by whom", () => {
 
 test("what is not known is left to be read as English", () => {
   for (const text of ["", "the motor answers with an error", "drives enabled, but for one", "a b begins"]) assert.equal(translated(text), null);
+});
+
+test("of roles, stops and a run-down the figures and names stay", () => {
+  assert.equal(translated("anna is viewer; operator is needed"), "anna has the role viewer; the role operator is needed");
+  assert.equal(translated("emergency stop: requested by anna from 10.0.0.7 over the service's API"), "emergency stop, requested by anna from 10.0.0.7");
+  assert.equal(translated("make sure that no one is in danger; then: reset it at its service, or: hil bench reset sim --by NAME"), "make sure that no one is in danger; then reset it here, or with hil bench reset sim --by NAME");
+  assert.equal(translated("begins, no device gives torque; the axle turns: motor_speed_rad_s reads 141 rad/s"), "the run-down begins, no device gives torque; motor speed 141 rad/s");
+  assert.equal(translated("ends after 10 s: not recorded any longer; the axle turns: motor_speed_rad_s reads 138 rad/s"), "the run-down is not recorded any longer after 10 s; motor speed 138 rad/s");
+  assert.equal(translated("ends after 4.2 s: the axle stands"), "the run-down ends after 4.2 s: the axle stands");
+});
+
+test("moments in texts are those of the reader's clock", () => {
+  const shown = moment("2026-11-28T12:37:00Z");
+  assert.equal(withLocalMoments("since 2026-11-28T12:37:18+00:00, by anna"), `since ${shown}, by anna`);
+  assert.equal(withLocalMoments("from 2026-11-28 12:37 UTC to later"), `from ${shown} to later`);
+  assert.equal(withLocalMoments("version 2026-11-28, 99-99 2026-99-99T99:99:99Z"), "version 2026-11-28, 99-99 2026-99-99T99:99:99Z");
 });

@@ -32,11 +32,11 @@ def _secret(data: Path, name: str, role: Role) -> str:
     return make_token(data, environment_of(data)["HIL_DATABASE"], name, role).secret
 
 
-def _enter(page: playwright.Page, there: Served, secret: str) -> None:
+def _enter(page: playwright.Page, there: Served, secret: str, state: str = "Free") -> None:
     to(page, there, "benches/sim")
     page.get_by_label("Token").fill(secret)
     page.get_by_role("button", name="Sign in").click()
-    expect(heading(page, "Free")).to_be_visible()
+    expect(heading(page, re.compile(state))).to_be_visible()
 
 
 def test_a_bench_is_reserved_handed_over_and_a_run_is_let_in(page: playwright.Page, there: Served) -> None:
@@ -53,7 +53,17 @@ def test_a_bench_is_reserved_handed_over_and_a_run_is_let_in(page: playwright.Pa
     button.click()
     expect(region(page, "Reservations")).to_contain_text("anna: endurance of axle 7")
     expect(region(page, "Reservations")).to_contain_text("now, until")
-    expect(page.get_by_text("reserved by anna")).to_be_visible()
+    expect(heading(page, re.compile("^Reserved for anna until "))).to_be_visible()
+    page.get_by_role("link", name="Operator panel").click()
+    expect(heading(page, re.compile("^Reserved for anna until "))).to_be_visible()
+    refuse_hard_to_use(page)
+    to(page, there, "benches")
+    expect(page.locator(".card.bench")).to_contain_text("Reserved for anna until")
+    expect(page.locator(".card.bench")).not_to_contain_text("Free")
+    to(page, there, "wall")
+    expect(page.locator(".wall li.bench .state")).to_have_text("Reserved")
+    expect(page.locator(".wall li.bench")).to_contain_text("Reserved for anna until")
+    to(page, there, "benches/sim")
     bert.queue(RunWanted(plan="short", bench="sim"))
     waiting = region(page, "Queue")
     expect(waiting).to_contain_text(
@@ -75,7 +85,7 @@ def test_whoever_has_the_bench_lets_a_run_start(page: playwright.Page, there: Se
     hour = datetime.timedelta(hours=1)
     anna.reserve("sim", now - hour, now + hour, "endurance")
     run = bert.queue(RunWanted(plan="short", bench="sim"))
-    _enter(page, there, there.token)
+    _enter(page, there, there.token, "Reserved for anna until")
     page.get_by_role("button", name=f"Let it start: run {run.id}").click()
     *_, last = bert.progress(run.id)
     assert last.verdict == "pass"

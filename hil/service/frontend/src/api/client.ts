@@ -9,11 +9,15 @@ export const API = "/api/v1";
 
 export class Refused extends Error {
   readonly status: number;
+  readonly what: string;
+  readonly where: string;
   readonly fix: string;
 
   constructor(status: number, problem: Problem) {
     super(problem.where ? `${problem.where}: ${problem.what}` : problem.what);
     this.status = status;
+    this.what = problem.what;
+    this.where = problem.where ?? "";
     this.fix = problem.fix ?? "";
   }
 }

@@ -2,10 +2,13 @@
 
 import type { ComponentChildren, JSX } from "preact";
 import { LANGUAGE } from "./language.ts";
+import { withLocalMoments } from "./local-moments.ts";
 import { translated } from "./phrases.ts";
 
 export function English({ children }: { children: ComponentChildren }): JSX.Element {
-  if (LANGUAGE === "en") return <>{children}</>;
-  const known = typeof children === "string" ? translated(children) : null;
-  return known === null ? <span lang="en">{children}</span> : <>{known}</>;
+  const said = typeof children === "string" ? children : null;
+  const shown = said === null ? children : withLocalMoments(said);
+  if (LANGUAGE === "en") return <>{shown}</>;
+  const known = said === null ? null : translated(said);
+  return known === null ? <span lang="en">{shown}</span> : <>{withLocalMoments(known)}</>;
 }

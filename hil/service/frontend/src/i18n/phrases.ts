@@ -1,10 +1,14 @@
 // Sentences that the service says again and again, known by their form: shown in the reader's language.
 
+import { wordsOf } from "../format.ts";
+import { REFUSALS } from "./refusal-phrases.ts";
 import { t } from "./text.ts";
 
 type Said = Record<string, string>;
 
 const named = (names = ""): string => (names === "RMCU and dynos" ? t("RMCU and dynos") : names);
+
+const turning = (of: Said): Said => ({ ...of, channel: wordsOf(of["channel"] ?? "") });
 
 // The words in groups are names and figures; they stay as they are.
 const PHRASES: [RegExp, (of: Said) => string][] = [
@@ -22,9 +26,9 @@ const PHRASES: [RegExp, (of: Said) => string][] = [
   [/^the bench loop was delayed by (?<seconds>\S+) s$/, (of) => t("the bench loop was delayed by {seconds} s", of)],
   [/^executed: (?<steps>[^;]+); the wheels turn at (?<speed>\S+) rad\/s, the RMCU is in '(?<state>[^']+)'$/, (of) => t("executed: {steps}; the wheels turn at {speed} rad/s, the RMCU is in '{state}'", of)],
   [/^the axle runs down$/, () => t("the axle runs down")],
-  [/^begins, no device gives torque; the axle turns: (?<speed>.+)$/, (of) => t("the run-down begins, no device gives torque: {speed}", of)],
+  [/^begins, no device gives torque; the axle turns: (?<channel>\S+) reads (?<speed>.+)$/, (of) => t("the run-down begins, no device gives torque; {channel} {speed}", turning(of))],
   [/^ends after (?<seconds>\S+) s: the axle stands$/, (of) => t("the run-down ends after {seconds} s: the axle stands", of)],
-  [/^ends after (?<seconds>\S+) s: not recorded any longer; the axle turns: (?<speed>.+)$/, (of) => t("the run-down is not recorded any longer after {seconds} s: {speed}", of)],
+  [/^ends after (?<seconds>\S+) s: not recorded any longer; the axle turns: (?<channel>\S+) reads (?<speed>.+)$/, (of) => t("the run-down is not recorded any longer after {seconds} s; {channel} {speed}", turning(of))],
   [/^cancelled by (?<person>.+)$/, (of) => t("cancelled by {person}", of)],
   [/^stopped by the operator$/, () => t("stopped by the operator")],
   [/^the service ended during the run; data measured before that is kept$/, () => t("the service ended during the run; data measured before that is kept")],
@@ -38,6 +42,7 @@ const PHRASES: [RegExp, (of: Said) => string][] = [
   [/^its files are being uploaded$/, () => t("its files are being uploaded")],
   [/^its agent is not connected$/, () => t("its agent is not connected")],
   [/^run (?<run>\d+) of an earlier service process is being ended$/, (of) => t("run {run} of an earlier service process is being ended", of)],
+  ...REFUSALS,
   [/^emergency stop since (?<since>[^,]+), by (?<person>.+?): requested by .+? at the bench service$/, (of) => t("emergency stop since {since}, by {person}", of)],
 ];
 

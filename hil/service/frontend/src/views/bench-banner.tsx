@@ -12,13 +12,13 @@ import { useLost, type BenchState } from "../live.ts";
 import { useMay, useMe } from "../session.ts";
 import { linkTo } from "../ui/parts.tsx";
 import { PromptCard } from "./panel-prompt.tsx";
-import { aboutBench, headlineOf, isHeld, nextIn, resetText, titleOf } from "./bench-words.ts";
+import { aboutBench, headlineOf, isHeld, isReserved, nextIn, resetText, titleOf } from "./bench-words.ts";
 
 export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 }): JSX.Element {
   const { bench, running, message } = state;
   const Title = level === 1 ? "h1" : "h2";
   return (
-    <section class={`banner ${bench.state}`} aria-label={t("State of {bench}", { bench: bench.name })}>
+    <section class={`banner ${isReserved(bench) ? "in_use" : bench.state}`} aria-label={t("State of {bench}", { bench: bench.name })}>
       <p class="kind">{aboutBench(bench, bench.title || bench.name)}</p>
       <Title class="headline" aria-live="polite">{headlineOf(bench, running ? titleOf(running) : null)}</Title>
       {running ? <p>{tx("<a>Run {run}</a>, by {person}: {doing}", { a: linkTo(to.run(running.id)), run: running.id, person: running.requested_by, doing: <English>{running.doing}</English> })}</p> : null}

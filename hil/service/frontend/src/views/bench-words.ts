@@ -1,6 +1,7 @@
 // States of a bench in words: what it does, who has it, what comes next.
 
 import type { Bench, Run } from "../api/types.ts";
+import { nearMoment } from "../format.ts";
 import { t } from "../i18n/text.ts";
 import type { BenchState } from "../live.ts";
 
@@ -12,10 +13,24 @@ export const isHeld = (run: Run | null): boolean => run?.doing.startsWith("held"
 
 export const titleOf = (run: Run): string => run.title || run.plan;
 
+// Who has a bench for a while from now on, or by a reservation that is under way; '' for no one.
+export const holderOf = (bench: Bench): string => bench.lease || (bench.reserved_by ?? "");
+
+// One that does nothing, and that nobody but its holder can use now.
+export const isReserved = (bench: Bench): boolean => bench.state === "free" && holderOf(bench) !== "";
+
+export function reservedText(bench: Bench): string {
+  const who = holderOf(bench), until = bench.lease ? bench.lease_until : bench.reserved_until;
+  return until ? t("Reserved for {who} until {end}", { who, end: nearMoment(until) }) : t("Reserved for {who}", { who });
+}
+
+// The colours of a bench: its state, or that it waits for a person.
+export const lookOf = (bench: Bench, run: Run | null): string => (run?.prompt || isReserved(bench) ? "in_use" : bench.state);
+
 export function headlineOf(bench: Bench, title: string | null): string {
   if (bench.stop_confirmed === false) return t("Emergency stop asked for, NOT CONFIRMED");
   if (title !== null && bench.state === "running") return t("Running: {plan}", { plan: title });
-  return STATES[bench.state];
+  return isReserved(bench) ? reservedText(bench) : STATES[bench.state];
 }
 
 // To be read from afar.
@@ -29,6 +44,7 @@ const WALL: Record<Bench["state"], string> = { free: t("Free"), running: t("Runn
 
 export function wallWordOf(bench: Bench, run: Run | null): string {
   if (bench.stop_confirmed === false) return WALL.emergency_stop;
+  if (isReserved(bench)) return t("Reserved");
   return bench.state !== "running" ? WALL[bench.state] : run?.prompt ? t("Question") : isHeld(run) ? t("Held") : WALL.running;
 }
 
@@ -47,12 +63,9 @@ export function nextOf({ bench, running, queue }: BenchState): string {
   return more > 0 ? t("Next: {plan}, by {person}, and {count} more", values) : t("Next: {plan}, by {person}", values);
 }
 
-// Who has a bench for a while from now on, or by a reservation that is under way; '' for no one.
-export const holderOf = (bench: Bench): string => bench.lease || (bench.reserved_by ?? "");
-
 // Where a bench is and who has it, behind its title.
 export const aboutBench = (bench: Bench, title: string): string =>
-  [title, bench.simulated ? t("simulated") : "", bench.machine ? t("at {machine}", { machine: bench.machine }) : "", holderOf(bench) ? t("reserved by {person}", { person: holderOf(bench) }) : ""].filter(Boolean).join(", ");
+  [title, bench.simulated ? t("simulated") : "", bench.machine ? t("at {machine}", { machine: bench.machine }) : "", holderOf(bench) && !isReserved(bench) ? t("reserved by {person}", { person: holderOf(bench) }) : ""].filter(Boolean).join(", ");
 
 const LEAST_SHARE = 0.02; // of which the rest is estimated
 

@@ -7,7 +7,7 @@ import { useData } from "../data.ts";
 import { English } from "../i18n/english.tsx";
 import { t, tn, tx } from "../i18n/text.ts";
 import { Heading, linkTo, Loaded } from "../ui/parts.tsx";
-import { aboutBench, headlineOf } from "./bench-words.ts";
+import { aboutBench, headlineOf, lookOf } from "./bench-words.ts";
 
 const AGAIN_MS = 2000;
 
@@ -30,7 +30,7 @@ export function Benches(): JSX.Element {
 function Card({ bench }: { bench: Bench }): JSX.Element {
   const run = useData<Run>(bench.running ? `/runs/${bench.running}` : null, AGAIN_MS).data;
   return (
-    <li class={`card bench ${bench.state}`}>
+    <li class={`card bench ${lookOf(bench, null)}`}>
       <h2><a href={to.bench(bench.name)}>{bench.name}</a></h2>
       <p class="quiet">{aboutBench(bench, bench.title)}</p>
       <p class="state">{headlineOf(bench, null)}</p>

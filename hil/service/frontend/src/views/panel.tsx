@@ -10,7 +10,7 @@ import { useLive, type BenchState, type Live } from "../live.ts";
 import { useStore } from "../store.ts";
 import { play, soundOf, soundOn, turnSound } from "../ui/sound.ts";
 import { Actions } from "./bench-banner.tsx";
-import { aboutBench, leftOf, nextOf, titleOf, wordOf } from "./bench-words.ts";
+import { aboutBench, leftOf, lookOf, nextOf, titleOf, wordOf } from "./bench-words.ts";
 import { PromptCard, useNow } from "./panel-prompt.tsx";
 import { NewestHandover } from "./team/handovers.tsx";
 
@@ -39,7 +39,7 @@ export function Panel({ bench }: { bench: string }): JSX.Element {
 function State({ state }: { state: BenchState }): JSX.Element {
   const { bench, running, message } = state, prompt = running?.prompt ?? null;
   return (
-    <section class={`banner ${prompt ? "in_use" : bench.state}`} aria-label={t("State of {bench}", { bench: bench.name })}>
+    <section class={`banner ${lookOf(bench, running)}`} aria-label={t("State of {bench}", { bench: bench.name })}>
       <p class="kind">{aboutBench(bench, bench.title || bench.name)}</p>
       <h1 class="headline word" aria-live="assertive">{wordOf(bench, running)}</h1>
       {running ? <Running state={state} /> : null}

@@ -8,7 +8,7 @@ import { English } from "../i18n/english.tsx";
 import { t } from "../i18n/text.ts";
 import { showAs } from "../theme.ts";
 import { Badge, verdictOf } from "../ui/parts.tsx";
-import { headlineOf, holderOf, leftOf, nextIn, titleOf, wallWordOf } from "./bench-words.ts";
+import { headlineOf, holderOf, isReserved, leftOf, lookOf, nextIn, reservedText, titleOf, wallWordOf } from "./bench-words.ts";
 import { useNow } from "./panel-prompt.tsx";
 import { useWall, type Shown } from "./wall-data.ts";
 
@@ -40,11 +40,11 @@ function Card({ of: { bench, running, queue, latest }, nowMs, alone }: { of: Sho
   const left = leftOf(bench, running, nowMs);
   const next = nextIn(queue), has = running?.requested_by || holderOf(bench);
   return (
-    <li class={`bench ${running?.prompt ? "in_use" : bench.state}`}>
+    <li class={`bench ${lookOf(bench, running)}`}>
       <h2><a href={to.wall(bench.name)}>{bench.name}</a> {bench.title ? <small>{bench.title}</small> : null}</h2>
       <p class="state">{wallWordOf(bench, running)}</p>
       {bench.stop_confirmed === false ? <p class="bad">{headlineOf(bench, null)}</p> : null}
-      {has ? <p>{running ? t("by {person}", { person: has }) : t("reserved by {person}", { person: has })}</p> : null}
+      {has ? <p>{running ? t("by {person}", { person: has }) : isReserved(bench) ? reservedText(bench) : t("reserved by {person}", { person: has })}</p> : null}
       {running ? (
         <>
           <p class="plan">{titleOf(running)}</p>
