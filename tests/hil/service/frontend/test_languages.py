@@ -138,3 +138,49 @@ def test_a_catalogue_that_does_not_come_leaves_the_page_in_english(
         to(page, there, "benches/sim")
         expect(page.get_by_role("button", name="Emergency stop sim")).to_be_visible()
         expect(page.locator("html")).to_have_attribute("lang", "en")
+
+
+def _elsewhere(text: str) -> str:
+    """A moment that is not said in the reader's way; '' if there is none."""
+    found = re.search(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d", text)
+    return found[0] if found else ""
+
+
+@pytest.mark.parametrize("locale", ["de", "ja"])
+def test_a_stopped_bench_says_so_in_the_readers_words_and_time(
+    page: playwright.Page, there: Served, locale: str
+) -> None:
+    there.post("/benches/sim/emergency-stop")
+    there.post("/benches/sim/emergency-stop")
+    waiting = there.queue()
+    try:
+        for address in ("benches/sim", "benches/sim/panel", "benches", f"runs/{waiting}", "wall"):
+            to(page, there, address)
+            main = page.locator("main")
+            expect(main).to_contain_text("Not-Halt seit" if locale == "de" else "から非常停止")
+            assert _elsewhere(main.inner_text()) == ""
+            expect(main.locator("span[lang=en]")).to_have_count(0)
+    finally:
+        there.post(f"/runs/{waiting}/abort")
+        there.post("/benches/sim/reset")
+
+
+@pytest.mark.parametrize("locale", ["de"])
+@pytest.mark.parametrize("refusals", [("409 (Conflict)",)])
+def test_a_refusal_is_in_the_readers_words(page: playwright.Page, there: Served) -> None:
+    there.post("/benches/sim/emergency-stop")
+    waiting = there.queue()
+
+    def cancel_before(route: playwright.Route) -> None:
+        if route.request.method == "PATCH":
+            there.post(f"/runs/{waiting}/abort")
+        route.continue_()
+
+    try:
+        page.route(re.compile(f"/runs/{waiting}$"), cancel_before)
+        to(page, there, "benches/sim")
+        page.get_by_role("button", name=f"Lauf {waiting} vorziehen").click()
+        refusal = page.get_by_role("alert").filter(has_text="Warteschlange")
+        expect(refusal).to_have_text(f"Lauf {waiting} ist nicht mehr in der Warteschlange")
+    finally:
+        there.post("/benches/sim/reset")

@@ -43,7 +43,7 @@ const PHRASES: [RegExp, (of: Said) => string][] = [
   [/^its agent is not connected$/, () => t("its agent is not connected")],
   [/^run (?<run>\d+) of an earlier service process is being ended$/, (of) => t("run {run} of an earlier service process is being ended", of)],
   ...REFUSALS,
-  [/^emergency stop since (?<since>[^,]+), by (?<person>.+?): requested by .+? at the bench service$/, (of) => t("emergency stop since {since}, by {person}", of)],
+  [/^emergency stop since (?<since>[^,]+), by (?<person>.+?): requested by .+$/, (of) => t("emergency stop since {since}, by {person}", of)],
 ];
 
 // Null for a sentence that is none of them.
