@@ -42,7 +42,7 @@ function Card({ of: { bench, running, queue, latest }, nowMs, alone }: { of: Sho
   return (
     <li class={`bench ${lookOf(bench, running)}`}>
       <h2><a href={to.wall(bench.name)}>{bench.name}</a> {bench.title ? <small>{bench.title}</small> : null}</h2>
-      <p class="state">{wallWordOf(bench, running)}</p>
+      <p class={isReserved(bench) ? "state long" : "state"}>{wallWordOf(bench, running)}</p>
       {bench.stop_confirmed === false ? <p class="bad">{headlineOf(bench, null)}</p> : null}
       {has ? <p>{running ? t("by {person}", { person: has }) : isReserved(bench) ? reservedText(bench) : t("reserved by {person}", { person: has })}</p> : null}
       {running ? (
