@@ -23,6 +23,7 @@ import { Notes } from "./notes.tsx";
 import { isPassed, Outcome } from "./outcome.tsx";
 import { look, rangeOfSegment } from "./places.ts";
 import { WhyItWaits } from "./waiting.tsx";
+import { BestRun } from "./best-run.tsx";
 import { Downloads, Evidence, Happenings } from "./run-parts.tsx";
 
 const OVER = ["ended", "interrupted", "cancelled"];
@@ -99,6 +100,7 @@ function RunActions({ run }: { run: Run }): JSX.Element | null {
       {recorded && may("engineer") ? <a href={`${to.list("diagnoses")}?runs=${run.id}`}>{t("Diagnose")}</a> : null}
       {recorded && may("engineer") ? <a href={`${to.list("identifications")}?runs=${run.id}`}>{t("Identify a model")}</a> : null}
       {run.state === "ended" ? <a href={`${to.list("compare")}?runs=${run.id}`}>{t("Compare with another run")}</a> : null}
+      {run.state === "ended" ? <BestRun of={run} /> : null}
       <a href={`${to.list("runs")}?plan=${encodeURIComponent(run.plan)}`}>{t("All runs of this plan")}</a>
     </div>
   );
