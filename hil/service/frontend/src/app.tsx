@@ -1,7 +1,7 @@
 // The frame of every view: menu, who is signed in, the emergency stop, the last refusal.
 
 import type { JSX } from "preact";
-import { useEffect } from "preact/hooks";
+import { useEffect, useRef } from "preact/hooks";
 import { findStopPost, Refused } from "./api/client.ts";
 import { titleOf, to } from "./addresses.ts";
 import { refusal } from "./data.ts";
@@ -59,8 +59,9 @@ export function App(): JSX.Element {
 }
 
 function Refusal(): JSX.Element | null {
-  const error = useStore(refusal);
+  const error = useStore(refusal), shown = useRef<HTMLParagraphElement>(null);
+  useEffect(() => shown.current?.scrollIntoView({ block: "nearest" }), [error]); // what was refused may stand far below
   if (!error) return null;
   const fix = error instanceof Refused ? error.fix : "";
-  return <p class="alarm" role="alert"><English>{fix ? `${error.message}\n${fix}` : error.message}</English></p>;
+  return <p class="alarm" role="alert" ref={shown}><English>{fix ? `${error.message}\n${fix}` : error.message}</English></p>;
 }

@@ -63,6 +63,24 @@ def test_a_plan_is_foreseen_queued_watched_stopped_and_found(page: playwright.Pa
     expect(heading(page, "Free")).to_be_visible()
 
 
+def test_no_plan_is_chosen_beforehand_but_the_last_that_this_person_ran(
+    tmp_path: Path, page: playwright.Page
+) -> None:
+    with served(tmp_path / "data", "--rate", "1000", state=tmp_path / "state") as service:
+        to(page, service, "benches/sim")
+        plan = choice(page, "Plan")
+        expect(plan.locator("option", has_text="abs_release: Regeneration")).to_be_attached()
+        expect(plan).to_have_value("")
+        expect(page.get_by_role("button", name="Queue the run")).to_be_disabled()
+        plan.select_option("abs_release")
+        expect(page.get_by_text("About 51 s; largest torque asked for: 200")).to_contain_text("at the wheels")
+        service.give("short", SHORT)
+        service.over(service.queue("short"))
+        page.reload()
+        expect(plan).to_have_value("short")
+        page.goto("about:blank")
+
+
 def test_a_run_is_queued_and_ended_by_keyboard_alone(page: playwright.Page, there: Served) -> None:
     to(page, there, "benches/sim")
     plan = choice(page, "Plan")

@@ -22,6 +22,7 @@ import { Criteria } from "../criteria.tsx";
 import { Notes } from "./notes.tsx";
 import { isPassed, Outcome } from "./outcome.tsx";
 import { look, rangeOfSegment } from "./places.ts";
+import { Unsettled } from "./unsettled.tsx";
 import { WhyItWaits } from "./waiting.tsx";
 import { BestRun } from "./best-run.tsx";
 import { Downloads, Evidence, Happenings } from "./run-parts.tsx";
@@ -32,7 +33,7 @@ const AGAIN_MS = 2000;
 
 export function RunView({ run: id }: { run: number }): JSX.Element {
   const run = useData<Run>(`/runs/${id}`, AGAIN_MS);
-  return <Loaded of={run} what={t("run {run}", { run: id })}>{(found) => <Found key={found.state} run={found} />}</Loaded>;
+  return <Loaded whole of={run} what={t("run {run}", { run: id })}>{(found) => <Found key={found.state} run={found} />}</Loaded>;
 }
 
 function Found({ run }: { run: Run }): JSX.Element {
@@ -49,6 +50,7 @@ function Found({ run }: { run: Run }): JSX.Element {
       {isLive && state?.running?.id === run.id ? <Banner state={state} /> : null}
       {WAITING.includes(run.state) ? <WhyItWaits run={run} /> : null}
       {isOver ? <Outcome run={run} view={view.data} /> : null}
+      {isOver ? <Unsettled run={run} view={view.data} /> : null}
       <RunFacts run={run} />
       <RunActions run={run} />
       {view.data ? (
