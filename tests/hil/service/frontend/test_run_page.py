@@ -14,7 +14,7 @@ from tests.hil.service.looks import refuse_hard_to_use
 from tests.hil.service.served import ASKING, SHORT, Served, served
 
 pytestmark = IN_A_BROWSER
-_UNSETTLED = SHORT.replace("name: short", "name: unsettled") + (
+_UNSETTLED = SHORT.replace("name: short", "name: unsettled").replace("after_s: 1", "after_s: 2.1") + (
     "  - {segment: s, metric: settling_shaft_torque, unit: s}\n"
 )
 _FAILING = SHORT.replace("name: short", "name: failing").replace("upper: 400", "upper: 90")
