@@ -286,6 +286,31 @@ def test_what_is_seen_of_a_run_stands_in_its_address(page: playwright.Page, ther
     page.wait_for_function("text => document.querySelector('.cursors table')?.innerText === text", arg=seen)
 
 
+def test_a_cursor_that_is_dragged_is_written_to_the_address_at_rest_only(
+    page: playwright.Page, there: Served
+) -> None:
+    to(page, there, "runs/1?c=1")
+    cursors = page.get_by_role("region", name="Values at the cursors")
+    expect(cursors).to_contain_text("1.000")
+    page.evaluate(
+        """() => {
+          window.written = 0;
+          const replace = history.replaceState.bind(history);
+          history.replaceState = (...all) => { window.written += 1; replace(...all); };
+        }"""
+    )
+    page.wait_for_load_state("networkidle")
+    page.locator(".plot-place").first.focus()
+    for _ in range(8):
+        page.keyboard.press("ArrowRight")
+    expect(cursors).not_to_contain_text("1.000")
+    page.wait_for_function("() => window.written > 0")
+    assert page.evaluate("window.written") < 8
+    shown = cursors.locator("tbody tr").first.inner_text()
+    page.reload()
+    expect(cursors.locator("tbody tr").first).to_have_text(shown.replace("\t", ""))
+
+
 def test_a_run_is_asked_for_again_with_another_value(page: playwright.Page, there: Served) -> None:
     to(page, there, "runs/2")
     page.get_by_role("link", name="Again with other values").click()
