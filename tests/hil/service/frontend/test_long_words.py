@@ -113,6 +113,7 @@ def test_no_view_scrolls_sideways_however_long_the_words(page: playwright.Page, 
     for address in ADDRESSES:
         to(page, there, address)
         expect(page.locator("h1").first).to_be_visible()
+        expect(page.locator(".top, .wall .state").first).to_be_visible()
         loading = page.locator("main").get_by_text(re.compile("Loading|Laden:|読み込み中"))
         expect(loading).to_have_count(0)
         for width in WIDTHS:
