@@ -47,7 +47,7 @@ def value_text(row: CriterionRow, run: int) -> str:
     text = labels.number(value, significant=4)
     if run and relative is not None:
         text += f" ({labels.share(relative, signed=True)})"
-    return text + _MARKS.get(row.verdicts[run], "")
+    return text + _MARKS.get(row.verdicts[run] or "", "")
 
 
 def _page(found: Comparison) -> Page:

@@ -8,7 +8,7 @@ from test_plans.loading import library_controllers, library_plans, load_plan, pl
 from test_plans.metrics import METRICS, Metric, NoValueError
 from test_plans.operator_pictures import MOST_PICTURE_BYTES, pictures_of
 from test_plans.pace import Outlook, Pace
-from test_plans.plan import Plan, estimate_duration_s
+from test_plans.plan import Plan, estimate_duration_s, largest_requests_nm
 from test_plans.schema import plan_schema
 from test_plans.sequence import Sequence, library_sequences, load_sequence
 from test_plans.steps import PICTURE, STEPS, Step
@@ -39,6 +39,7 @@ __all__ = [
     "controller_choices",
     "estimate_duration_s",
     "judge",
+    "largest_requests_nm",
     "library_controllers",
     "library_plans",
     "library_sequences",

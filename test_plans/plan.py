@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 from pydantic import Field
 
 from hil.core.files.toml_file import FORMAT, FormatNumber
@@ -14,8 +17,11 @@ from test_plans.conductor import PlannedSegment
 from test_plans.criteria import Criterion
 from test_plans.device_checks import DeviceChecks
 from test_plans.pace import Pace
-from test_plans.steps import Step
+from test_plans.steps import Excitation, Repeat, Step
 from test_plans.variables import Variable
+
+_SAMPLE_TIME_S = 0.001
+_LONGEST_SAMPLED_S = 1000.0
 
 
 class PlanKeys(Strict):
@@ -94,3 +100,31 @@ def estimate_duration_s(plan: Plan, pace: Pace | None = None) -> float:
         duration, speed = step.outlook(speed, pace)
         total += duration
     return total
+
+
+def largest_requests_nm(plan: Plan) -> dict[str, float]:
+    """Largest magnitude of each requested torque, N m, by quantity: `driving_torque` is at the wheels.
+
+    Steps that say no levels are sampled at 1 kHz in their first play, but those of more than 1000 s.
+    """
+    found: dict[str, float] = {}
+    for step in _excitations(plan.steps):
+        found[step.quantity] = max(found.get(step.quantity, 0.0), _largest_nm(step))
+    return found
+
+
+def _excitations(steps: tuple[Step, ...]) -> Iterator[Excitation]:
+    for step in steps:
+        if isinstance(step, Excitation):
+            yield step
+        elif isinstance(step, Repeat):
+            yield from _excitations(step.steps)
+
+
+@functools.lru_cache(1000)
+def _largest_nm(step: Excitation) -> float:
+    levels: list[float] = [getattr(step, name, 0.0) for name in ("from_nm", "to_nm")]
+    levels += getattr(step, "levels_nm", ())
+    if not any(levels) and step.play_s <= _LONGEST_SAMPLED_S:
+        levels += [float(np.max(np.abs(step.samples(_SAMPLE_TIME_S, 0)), initial=0.0))]
+    return max(abs(one) for one in levels)

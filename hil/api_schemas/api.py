@@ -210,6 +210,12 @@ class PlanData(_Data):
     hazard: str = ""
     built_in: bool
     variables: dict[str, VariableData]
+    duration_s: float | None = Field(
+        None, description="bench time with the default values, estimated without a bench"
+    )
+    largest_requests_nm: dict[str, float] = Field(
+        {}, description="largest magnitude of each requested torque; `driving_torque` is at the wheels"
+    )
 
 
 class ForecastWanted(_Data):

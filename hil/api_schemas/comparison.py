@@ -18,23 +18,30 @@ class _Data(BaseModel):
 
 
 class InputDifference(_Data):
-    """An input that differs between the two runs; `–` if one has no value."""
+    """An input that differs between the two runs; `–` if one has no value.
+
+    Values of plans are named by segment and kind, or by criterion: `segment tip_in (step): to_nm`.
+    """
 
     kind: Literal["controller", "model", "bench", "plan"]
     name: str
     first: str
     other: str
+    unit: str = Field("", description="unit of both; '' if the input says none")
 
 
 class ComparedCriterion(_Data):
-    """A criterion of both runs, in its unit; `relative` is (other - first) / |first|."""
+    """A criterion of either run, in its unit; `relative` is (other - first) / |first|.
+
+    A run that has no such criterion has null as value and as verdict.
+    """
 
     id: str
     title: str
     unit: str
     limit: str
     values: tuple[float | None, float | None]
-    verdicts: tuple[CriterionVerdict, CriterionVerdict]
+    verdicts: tuple[CriterionVerdict | None, CriterionVerdict | None]
     relative: float | None
     better: Literal["lower", "higher", ""] = Field(
         "", description="side on which its limits let it lie; '' for limits on both, none, or different ones"
@@ -61,7 +68,7 @@ class ComparedSegment(_Data):
 
 
 class ComparisonData(_Data):
-    """Two runs of one plan side by side."""
+    """Two runs side by side; `plan` is that of the first."""
 
     first: RunData
     other: RunData
@@ -73,6 +80,19 @@ class ComparisonData(_Data):
     criteria: list[ComparedCriterion]
     responses: list[ComparedResponse]
     segments: list[ComparedSegment]
+
+
+class BestRunData(_Data):
+    """The run to compare with: of those that passed the same criteria, the one farthest from its limits.
+
+    That is the one whose smallest margin is largest. A margin is the distance from the value to the nearer
+    limit over the magnitude of that limit.
+    """
+
+    run: RunData | None = Field(description="null: no run has passed the criteria of this run")
+    margin: float | None = Field(None, description="its smallest margin, over the criteria of its plan")
+    criterion: str = Field("", description="the criterion of that margin")
+    among: int = Field(description="how many runs passed the same criteria with the same limits")
 
 
 class Envelope(_Data):

@@ -17,7 +17,7 @@ from hil.api_schemas.api import (
     RunWanted,
     TrendData,
 )
-from hil.api_schemas.comparison import ComparisonData, TracesData
+from hil.api_schemas.comparison import BestRunData, ComparisonData, TracesData
 from hil.api_schemas.notes import NoteData, NoteWanted, RunNotes
 from hil.api_schemas.run_list import FoundRuns, RunsWanted
 from hil.client._requests import Requests, part
@@ -103,9 +103,13 @@ class RunRequests(Requests):
             time.sleep(_LOOK_S)
 
     def comparison(self, first: int, other: int) -> ComparisonData:
-        """Two runs of one plan side by side."""
+        """Two runs side by side; they may be of two plans."""
         query = f"first={first}&other={other}"
         return self._one(ComparisonData, "GET", f"/comparisons?{query}", within_s=_FORECAST_WITHIN_S)
+
+    def best_run(self, run: int) -> BestRunData:
+        """The best of the runs that passed the same criteria as this one."""
+        return self._one(BestRunData, "GET", f"/comparisons/best?run={run}")
 
     def traces(
         self,

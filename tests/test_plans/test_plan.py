@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 from pydantic import ValidationError
 
-from test_plans import Pace, estimate_duration_s, load_plan
+from test_plans import Pace, estimate_duration_s, largest_requests_nm, load_plan
 from tests.test_plans.writing import STEP, plan_of
 
 
@@ -38,3 +38,26 @@ def test_segments_of_the_whole_plan() -> None:
         "chirp_low",
         "chirp_biased",
     ]
+
+
+def test_the_largest_torque_that_a_plan_asks_for_is_that_of_its_steps_by_quantity() -> None:
+    step = {"quantity": "driving_torque", "before_s": 0.5, "after_s": 1}
+    down = {**step, "segment": "a", "from_nm": 0, "to_nm": -326}
+    within = {**step, "segment": "b", "from_nm": 10, "to_nm": 200}
+    sine = {
+        "segment": "c",
+        "quantity": "motor_torque",
+        "from_hz": 1,
+        "to_hz": 20,
+        "amplitude_nm": 8,
+        "bias_nm": 5,
+    }
+    plan = plan_of(
+        {"step": down},
+        {"repeat": {"times": 2, "steps": [{"step": within}]}},
+        {"chirp": {**sine, "duration_s": 5}},
+    )
+    found = largest_requests_nm(plan)
+    assert found["driving_torque"] == 326.0
+    assert found["motor_torque"] == pytest.approx(5 + 8, rel=1e-3)
+    assert largest_requests_nm(plan_of({"wait": {"duration_s": 1}})) == {}

@@ -23,13 +23,16 @@ CHANNELS = ("shaft_torque_nm", "motor_speed_rad_s", "wheel_speed_rad_s")
 
 @dataclass(frozen=True)
 class CriterionRow:
-    """One criterion of every run, in the criterion's unit; a value of None has a verdict that says why."""
+    """One criterion of every run, in the criterion's unit; a value of None has a verdict that says why.
+
+    A run of another plan that has no such criterion has neither value nor verdict.
+    """
 
     id: str
     title: str
     unit: str
     values: tuple[float | None, ...]
-    verdicts: tuple[CriterionVerdict, ...]
+    verdicts: tuple[CriterionVerdict | None, ...]
     limit: str
     absolute: bool
 
@@ -85,15 +88,20 @@ class Comparison:
         )
 
 
-def compare(runs: Sequence[ComparedRun]) -> Comparison:
-    """Lay runs of one plan side by side.
+def compare(runs: Sequence[ComparedRun], *, other_plans: bool = False) -> Comparison:
+    """Lay runs side by side: of one plan, or with `other_plans` of plans that have anything in common.
+
+    Segments are matched by name and kind, criteria by id and unit.
 
     Raises:
-        BadInputError: fewer than two runs, or different plans.
+        BadInputError: fewer than two runs, different plans, or no common channel.
     """
     if len(runs) < 2:
         raise BadInputError("one run cannot be compared", fix="name at least two run directories")
-    refuse_other_plans(runs)
+    if other_plans:
+        _refuse_without_common_channel(runs)
+    else:
+        refuse_other_plans(runs)
     notes = []
     changed = controllers_that_differ(runs)
     if changed:
@@ -107,19 +115,32 @@ def _first_line(text: str) -> str:
     return text.splitlines()[0]
 
 
+def _refuse_without_common_channel(runs: Sequence[ComparedRun]) -> None:
+    first = runs[0]
+    for run in runs[1:]:
+        if not any(name != TIME and name in run.recording for name in first.recording.channels):
+            raise BadInputError(
+                f"has no channel in common with {first.recording.source}",
+                where=str(run.recording.source),
+                fix="compare runs that measured the same channel",
+            )
+
+
 def _criteria(runs: Sequence[ComparedRun]) -> tuple[CriterionRow, ...]:
-    tables = [{criterion.id: criterion for criterion in run.result.criteria} for run in runs]
+    """Of all runs: those of the first in its order, then those that it has not."""
+    tables = [{(one.id, one.unit): one for one in run.result.criteria} for run in runs]
+    known = {key: one for table in reversed(tables) for key, one in table.items()}
     return tuple(
         CriterionRow(
-            criterion.id,
-            criterion.title,
-            criterion.unit,
-            tuple(table[criterion.id].value for table in tables),
-            tuple(table[criterion.id].verdict for table in tables),
-            _limit(criterion),
-            criterion.source == "plan" and not criterion.below,
+            known[key].id,
+            known[key].title,
+            known[key].unit,
+            tuple(table[key].value if key in table else None for table in tables),
+            tuple(table[key].verdict if key in table else None for table in tables),
+            _limit(known[key]),
+            known[key].source == "plan" and not known[key].below,
         )
-        for criterion in runs[0].result.criteria
+        for key in dict.fromkeys(key for table in tables for key in table)
     )
 
 
@@ -135,7 +156,7 @@ def _responses(runs: Sequence[ComparedRun]) -> tuple[ResponseRow, ...]:
     rows = []
     for segment in runs[0].result.segments:
         for channel in CHANNELS:
-            responses = [aligned(run, segment.id, channel) for run in runs]
+            responses = [aligned(run, segment.id, channel, segment.kind) for run in runs]
             if responses[0] is None:
                 continue
             spread = float(np.nanstd(responses[0][1]))
@@ -181,9 +202,14 @@ def _between(one: Response | None, two: Response | None) -> Response | None:
     return time[both], np.interp(time[both], *two) - values[both]
 
 
-def aligned(run: ComparedRun, segment: str, channel: str) -> tuple[Array, Array] | None:
-    """Time from the step in s and a channel over a segment; None where a run has not got one of them."""
-    found = next((s for s in run.result.segments if s.id == segment), None)
+def aligned(
+    run: ComparedRun, segment: str, channel: str, kind: str | None = None
+) -> tuple[Array, Array] | None:
+    """Time from the step in s and a channel over a segment; None where a run has not got one of them.
+
+    With a `kind` the segment must be of it.
+    """
+    found = next((s for s in run.result.segments if s.id == segment and kind in (None, s.kind)), None)
     if found is None or channel not in run.recording:
         return None
     first, last = (run.recording.rows_before(time_s) for time_s in (found.start_s, found.end_s))

@@ -1,4 +1,4 @@
-"""Which runs can be compared, those of one plan, and which of their inputs differ."""
+"""Runs that are compared: whether they are of one plan, and which of their inputs differ."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 import yaml
 
+from hil.analysis.comparison._plan_values import PlanValue, plan_groups
 from hil.core.errors import BadInputError
 from hil.core.files.toml_file import parse_toml
 from hil.core.recording import Recording
@@ -133,6 +134,7 @@ def _plan_of(recording: Recording) -> dict[str, Any]:
 
 Kind = Literal["controller", "model", "bench", "plan"]
 _NOTHING = "–"
+_NO_VALUE = PlanValue(_NOTHING, shown=_NOTHING)
 #: Says where a model or a controller came from, not what it is.
 _NOT_COMPARED = ("meta", "format")
 _LONGEST = 200
@@ -140,12 +142,16 @@ _LONGEST = 200
 
 @dataclass(frozen=True)
 class Difference:
-    """A value of an input that two runs do not have in common; `–` where a run has none."""
+    """A value of an input that two runs do not have in common; `–` where a run has none.
+
+    `unit` is that of both, '' where the input says none.
+    """
 
     kind: Kind
     name: str
     first: str
     other: str
+    unit: str = ""
 
 
 def differences(first: ComparedRun, other: ComparedRun) -> tuple[Difference, ...]:
@@ -153,10 +159,31 @@ def differences(first: ComparedRun, other: ComparedRun) -> tuple[Difference, ...
     found = [*_of_controllers(first, other)]
     for kind, name in _FILES.items():
         found += _between(kind, "", _table(first, name), _table(other, name))
-    return tuple(found)
+    return (*found, *_of_plans(first, other))
 
 
-_FILES: dict[Kind, str] = {"model": "model.toml", "bench": "bench.toml", "plan": PLAN}
+_FILES: dict[Kind, str] = {"model": "model.toml", "bench": "bench.toml"}
+
+
+def _of_plans(first: ComparedRun, other: ComparedRun) -> Iterator[Difference]:
+    """By segment and kind, and by criterion: a step more or less moves no other; a whole one is one line."""
+    one, two = plan_groups(_content(first, PLAN)), plan_groups(_content(other, PLAN))
+    for group in dict.fromkeys([*one, *two]):
+        if group not in one or group not in two:
+            yield Difference("plan", group, _in_words(one.get(group)), _in_words(two.get(group)))
+            continue
+        of_first, of_other = one[group], two[group]
+        for name in dict.fromkeys([*of_first, *of_other]):
+            mine, its = of_first.get(name, _NO_VALUE), of_other.get(name, _NO_VALUE)
+            if mine != its:
+                label = f"{group}: {name}" if group else name
+                yield Difference("plan", label, mine.shown, its.shown, mine.unit or its.unit)
+
+
+def _in_words(group: dict[str, PlanValue] | None) -> str:
+    if group is None:
+        return _NOTHING
+    return ", ".join(f"{name} {value.shown}" for name, value in group.items())[:_LONGEST] or "there"
 
 
 def _of_controllers(first: ComparedRun, other: ComparedRun) -> Iterator[Difference]:
@@ -181,6 +208,11 @@ def _between(kind: Kind, prefix: str, one: dict[str, str], two: dict[str, str]) 
 
 def _table(run: ComparedRun, name: str) -> dict[str, str]:
     """Values of an attached file by dotted key; nothing where there is no such file or it cannot be read."""
+    return dict(_flat(_content(run, name), ""))
+
+
+def _content(run: ComparedRun, name: str) -> dict[str, Any]:
+    """An attached file, without what says where it came from; empty where it cannot be read."""
     text = run.recording.attachments.get(name, b"").decode("utf-8", "replace")
     try:
         content = yaml.safe_load(text) if name == PLAN else parse_toml(text, name)
@@ -188,14 +220,13 @@ def _table(run: ComparedRun, name: str) -> dict[str, str]:
         return {}
     if not isinstance(content, dict):
         return {}
-    return dict(_flat({key: value for key, value in content.items() if key not in _NOT_COMPARED}, ""))
+    return {str(key): value for key, value in content.items() if key not in _NOT_COMPARED}
 
 
 def _flat(value: Any, path: str) -> Iterator[tuple[str, str]]:
     if isinstance(value, dict) and (value or not path):
         for key, one in value.items():
-            if key != "set_controller":  # compared by what is in their files
-                yield from _flat(one, f"{path}.{key}" if path else str(key))
+            yield from _flat(one, f"{path}.{key}" if path else str(key))
     elif isinstance(value, list) and any(isinstance(one, dict) for one in value):
         for index, one in enumerate(value):
             yield from _flat(one, f"{path}[{index}]")

@@ -7,10 +7,11 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query
 
 from hil.api_schemas.api import OVER, RunData, RunId
-from hil.api_schemas.comparison import ChannelName, ComparisonData, SegmentName, TracesData
+from hil.api_schemas.comparison import BestRunData, ChannelName, ComparisonData, SegmentName, TracesData
 from hil.engine import RECORDING
 from hil.service.api._access import TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
+from hil.service.best_run import best_run
 from hil.service.service import Service
 
 router = APIRouter(prefix="/comparisons", tags=["runs"])
@@ -21,13 +22,27 @@ _Seconds = Annotated[float | None, Query(ge=-1e6, le=1e6, allow_inf_nan=False)]
 async def compare_runs(
     service: TheService, me: Viewer, first: Annotated[RunId, Query()], other: Annotated[RunId, Query()]
 ) -> ComparisonData:
-    """Criteria of two runs of one plan with their differences, and the inputs that differ."""
+    """Criteria of two runs with their differences, and the inputs that differ; they may be of two plans."""
     del me
     one, two = _over(service, first), _over(service, other)
     found = await service.worker_pool.ask(
         "comparison", first=await _named(service, one), other=await _named(service, two)
     )
     return ComparisonData(first=one, other=two, **found)
+
+
+@router.get("/best", name="find_best_run")
+async def find_best_run(service: TheService, me: Viewer, run: Annotated[RunId, Query()]) -> BestRunData:
+    """Of the runs that passed the same criteria with the same limits, the one farthest from its limits."""
+    del me
+    of = _over(service, run)
+    passed = service.run_list.with_criteria_of(of.id)
+    wanted = passed[of.id] if of.verdict == "pass" else passed.pop(of.id)
+    best, among = best_run(wanted, passed)
+    if best is None:
+        return BestRunData(run=None, among=among)
+    found = service.runs.get(best.run)
+    return BestRunData(run=found, margin=best.margin, criterion=best.criterion, among=among)
 
 
 @router.get("/traces", name="compare_traces")

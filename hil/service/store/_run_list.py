@@ -8,6 +8,7 @@ from sqlalchemy import ColumnElement, Engine, UnaryExpression, and_, func, or_, 
 from sqlalchemy.orm import InstrumentedAttribute, load_only, sessionmaker
 
 from hil.api_schemas.run_list import FoundRun, FoundRuns, RunChoices, RunsWanted
+from hil.core.result import CriterionResult
 from hil.service.store._books import asked_apart
 from hil.service.store._runs import RUN_COLUMNS, run_data
 from hil.service.store._tables import CriterionRow, RunRow, TagRow
@@ -15,6 +16,8 @@ from hil.service.store._tables import CriterionRow, RunRow, TagRow
 #: Criteria are offered of so many newest runs: going through those of all runs would take a second.
 _NEWEST = 200
 _MOST_CHOICES = 1000
+#: The best is looked for among so many newest runs that passed.
+_MOST_PASSED = 2000
 _FILTERS: dict[str, InstrumentedAttribute[Any]] = {
     "bench": RunRow.bench,
     "plan": RunRow.plan,
@@ -85,6 +88,26 @@ class RunList:
                 tags=every(TagRow.tag),
                 criteria=sorted(session.scalars(criteria.limit(_MOST_CHOICES))),
             )
+
+    def with_criteria_of(self, run: int) -> dict[int, list[CriterionResult]]:
+        """Criteria of a run, and by number those of the newest runs that passed and have one of its first."""
+        of_run = select(CriterionRow).where(CriterionRow.run == run).order_by(CriterionRow.id)
+        with self._transaction() as session:
+            own = list(session.scalars(of_run))
+            if not own:
+                return {run: []}
+            passed = select(RunRow.id).join(CriterionRow, CriterionRow.run == RunRow.id)
+            passed = passed.where(CriterionRow.id == own[0].id, RunRow.verdict == "pass", RunRow.id != run)
+            numbers = passed.order_by(RunRow.id.desc()).limit(_MOST_PASSED)
+            found: dict[int, list[CriterionResult]] = {run: [_criterion(one) for one in own]}
+            for row in session.scalars(select(CriterionRow).where(CriterionRow.run.in_(numbers))):
+                found.setdefault(row.run, []).append(_criterion(row))
+            return found
+
+
+def _criterion(row: CriterionRow) -> CriterionResult:
+    facts = {name: getattr(row, name) for name in ("id", "value", "unit", "upper", "lower", "verdict")}
+    return CriterionResult.model_validate(facts)
 
 
 def _is(wanted: RunsWanted) -> ColumnElement[bool]:

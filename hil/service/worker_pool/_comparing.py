@@ -23,11 +23,11 @@ def comparison(first: list[str], other: list[str]) -> dict[str, Any]:
     """Fields of `ComparisonData`, runs given as (name, recording).
 
     Raises:
-        BadInputError: a recording cannot be read, or they are of different plans.
+        BadInputError: a recording cannot be read, or they have no channel in common.
     """
     one, two = _run(*first), _run(*other)
     try:
-        found = compare([one, two])
+        found = compare([one, two], other_plans=True)
     except BadInputError as error:
         raise _by_name(error, one, two) from None
     all_differences = differences(one, two)
@@ -47,7 +47,7 @@ def comparison(first: list[str], other: list[str]) -> dict[str, Any]:
                 "verdicts": row.verdicts,
                 "relative": row.relative[1],
                 "better": _better(row.id, one, two),
-                "source": _source(row.id, one),
+                "source": _source(row.id, one, two),
             }
             for row in found.criteria
         ],
@@ -64,7 +64,7 @@ def comparison(first: list[str], other: list[str]) -> dict[str, Any]:
                 "channels": _common(one, two),
             }
             for segment in one.result.segments
-            if any(segment.id == each.id for each in two.result.segments)
+            if any((segment.id, segment.kind) == (each.id, each.kind) for each in two.result.segments)
         ],
     }
 
@@ -135,8 +135,9 @@ def _better(criterion: str, *runs: ComparedRun) -> str:
     return "lower" if bounded == {(True, False)} else "higher" if bounded == {(False, True)} else ""
 
 
-def _source(criterion: str, run: ComparedRun) -> str:
-    return next((one.source for one in run.result.criteria if one.id == criterion), "plan")
+def _source(criterion: str, *runs: ComparedRun) -> str:
+    every = [one for run in runs for one in run.result.criteria]
+    return next((one.source for one in every if one.id == criterion), "plan")
 
 
 def _common(one: ComparedRun, two: ComparedRun) -> list[str]:

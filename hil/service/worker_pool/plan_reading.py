@@ -16,7 +16,7 @@ from hil.core.files import is_file
 from hil.core.files.toml_file import parse_toml
 from hil.core.model import model_from_dict
 from hil.execution.data_folder import files_of
-from test_plans import Plan, pictures_of, plan_from_text
+from test_plans import Plan, estimate_duration_s, largest_requests_nm, pictures_of, plan_from_text
 from test_plans.yaml_document import read_yaml
 
 
@@ -84,6 +84,8 @@ def data_of(plan: Plan, *, built_in: bool) -> PlanData:
             )
             for name, one in plan.variables.items()
         },
+        duration_s=estimate_duration_s(plan),
+        largest_requests_nm=largest_requests_nm(plan),
     )
 
 

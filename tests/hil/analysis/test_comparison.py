@@ -183,3 +183,75 @@ def test_values_of_model_and_bench_that_differ_are_named_and_where_a_model_is_fr
         ("model", "parameters.k", "–", "3"),
         ("bench", "seed", "–", "2"),
     ]
+
+
+ORIGINAL = b"""
+name: one
+variables:
+  swing_nm: {default: 20, unit: N m}
+steps:
+  - set_controller: {file: gain.toml}
+  - hold_speed: {speed_km_h: 0, duration_s: 1}
+  - step: {segment: s, quantity: driving_torque, from_nm: 0, to_nm: 180, after_s: 2}
+criteria:
+  - {segment: s, metric: peak, channel: shaft_torque_nm, upper: 500, unit: N m}
+"""
+
+
+def changed(*pairs, name="copy", plan=ORIGINAL):
+    for old, new in pairs:
+        assert old in plan
+        plan = plan.replace(old, new)
+    return run(name, plan=plan)
+
+
+def told(first, other):
+    return [(one.kind, one.name, one.first, one.other, one.unit) for one in differences(first, other)]
+
+
+def test_what_differs_in_a_copy_of_a_plan_is_named_by_segment_and_criterion():
+    first = changed()
+    higher = changed(
+        (b"to_nm: 180", b"to_nm: 200"), (b"upper: 500", b"upper: 450"), (b"default: 20", b"default: 25")
+    )
+    assert told(first, higher) == [
+        ("plan", "variables.swing_nm.default", "20", "25", "N m"),
+        ("plan", "segment s (step): to_nm", "180", "200", "N m"),
+        ("plan", "criterion s.peak.shaft_torque_nm: upper", "500", "450", "N m"),
+    ]
+
+
+def test_a_step_that_was_put_in_is_one_difference_and_moves_no_other():
+    more = b"  - step: {segment: before, from_nm: 0, to_nm: 20}\n  - step: {segment: s,"
+    assert told(changed(), changed((b"  - step: {segment: s,", more))) == [
+        ("plan", "segment before (step)", "–", "segment before, from_nm 0, to_nm 20", "")
+    ]
+
+
+def test_a_segment_of_another_kind_is_not_the_same_segment():
+    first, ramp = changed(), changed((b"- step:", b"- ramp:"))
+    assert [one[1] for one in told(first, ramp)] == ["segment s (step)", "segment s (ramp)"]
+    segments = tuple(one.model_copy(update={"kind": "ramp"}) for one in ramp.result.segments)
+    other = dataclasses.replace(ramp, result=ramp.result.model_copy(update={"segments": segments}))
+    assert np.isnan(compare([first, other], other_plans=True).responses[0].gaps[1])
+    assert compare([first, ramp], other_plans=True).responses[0].gaps[1] == 0.0
+
+
+def test_of_two_plans_criteria_that_a_run_lacks_have_neither_value_nor_verdict():
+    first, other = changed(), changed((b"metric: peak", b"metric: jerk"))
+    jerk = CriterionResult(id="s.jerk", value=3.0, unit="m/s³", upper=5.0, verdict="pass")
+    other = dataclasses.replace(other, result=other.result.model_copy(update={"criteria": (jerk,)}))
+    found = compare([first, other], other_plans=True)
+    rows = {row.id: (row.values, row.verdicts, row.limit) for row in found.criteria}
+    assert rows["s.peak"] == ((400.0, None), ("pass", None), "≤ 500")
+    assert rows["s.jerk"] == ((None, 3.0), (None, "pass"), "≤ 5")
+    with pytest.raises(BadInputError, match="a different plan"):
+        compare([first, other])
+
+
+def test_recordings_without_a_common_channel_are_refused():
+    first, other = changed(), changed()
+    channels = {"time_s": other.recording.channels["time_s"], "oil_temperature_c": np.zeros(20_000)}
+    other = dataclasses.replace(other, recording=dataclasses.replace(other.recording, channels=channels))
+    with pytest.raises(BadInputError, match="has no channel in common with"):
+        compare([first, other], other_plans=True)

@@ -63,12 +63,47 @@ def test_what_cannot_be_compared_is_said_in_the_names_of_runs(service: Served, t
         client.traces(*two, "s", "nothing")
     with pytest.raises(RefusedError, match="no data were measured in this period"):
         client.traces(*two, "s", "shaft_torque_nm", within_s=(50.0, 60.0))
-    text = service.get("/plans/short/text").decode().replace("name: short", "name: longer")
-    service.give("longer", text.replace("duration_s: 0.2}\n  - step", "duration_s: 0.3}\n  - step"))
-    longer = service.queue("longer")
-    service.over(longer)
-    with pytest.raises(RefusedError, match=f"run {longer}: ran a different plan from run {two[0]}"):
-        client.comparison(two[0], longer)
+
+
+def test_a_run_of_a_changed_copy_is_compared_and_what_differs_is_named(
+    service: Served, two: tuple[int, int]
+) -> None:
+    text = service.get("/plans/short/text").decode().replace("name: short", "name: copied")
+    text = text.replace("to_nm: $torque_nm", "to_nm: 120")
+    service.give(
+        "copied",
+        text.replace(
+            "metric: peak_shaft_torque, upper: 400, unit: N m", "metric: jerk, upper: 99, unit: m/s³"
+        ),
+    )
+    copied = service.queue("copied")
+    service.over(copied)
+    found = Client(service.url).comparison(two[0], copied)
+    told = {one.name: (one.first, one.other, one.unit) for one in found.differences}
+    assert told["segment s (step): to_nm"] == ("100 ($torque_nm)", "120", "N m")
+    assert [one.id for one in found.segments] == ["s"]
+    by_id = {one.id: one for one in found.criteria}
+    assert by_id["s.peak_shaft_torque"].values[1] is None
+    assert by_id["s.peak_shaft_torque"].verdicts == ("pass", None)
+    assert by_id["s.jerk"].verdicts[0] is None
+    assert None not in by_id["s.arrival"].values
+
+
+def test_the_best_run_is_the_one_farthest_from_its_limits_copies_among_them(
+    service: Served, two: tuple[int, int]
+) -> None:
+    text = service.get("/plans/short/text").decode().replace("name: short", "name: gentle")
+    service.give("gentle", text.replace("to_nm: $torque_nm", "to_nm: 60"))
+    gentle = service.queue("gentle")
+    assert service.over(gentle)["verdict"] == "pass"
+    best = Client(service.url).best_run(two[1])
+    assert best.run is not None
+    assert (best.run.id, best.criterion) == (gentle, "s.peak_shaft_torque")
+    peak = Client(service.url).comparison(two[0], gentle).criteria[0].values[1]
+    assert best.margin == pytest.approx((400 - peak) / 400)  # type: ignore[operator]
+    assert best.among >= 3
+    with pytest.raises(RefusedError, match="there is no run"):
+        Client(service.url).best_run(99999)
 
 
 def _step_s(service: Served, run: int) -> float:

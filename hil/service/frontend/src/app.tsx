@@ -1,7 +1,7 @@
 // The frame of every view: menu, who is signed in, the emergency stop, the last refusal.
 
 import type { JSX } from "preact";
-import { useEffect } from "preact/hooks";
+import { useEffect, useRef } from "preact/hooks";
 import { findStopPost, Refused } from "./api/client.ts";
 import { titleOf, to } from "./addresses.ts";
 import { refusal } from "./data.ts";
@@ -59,9 +59,10 @@ export function App(): JSX.Element {
 }
 
 function Refusal(): JSX.Element | null {
-  const error = useStore(refusal);
+  const error = useStore(refusal), shown = useRef<HTMLParagraphElement>(null);
+  useEffect(() => shown.current?.scrollIntoView({ block: "nearest" }), [error]); // what was refused may stand far below
   if (!error) return null;
-  if (!(error instanceof Refused)) return <p class="alarm" role="alert"><English>{error.message}</English></p>;
+  if (!(error instanceof Refused)) return <p class="alarm" role="alert" ref={shown}><English>{error.message}</English></p>;
   // What is wrong and what to do are sentences of their own, each in the reader's language where it is known.
-  return <p class="alarm" role="alert">{error.where ? `${error.where}: ` : ""}<English>{error.what}</English>{error.fix ? <>{"\n"}<English>{error.fix}</English></> : null}</p>;
+  return <p class="alarm" role="alert" ref={shown}>{error.where ? `${error.where}: ` : ""}<English>{error.what}</English>{error.fix ? <>{"\n"}<English>{error.fix}</English></> : null}</p>;
 }

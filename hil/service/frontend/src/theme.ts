@@ -34,7 +34,17 @@ export function beginTheme(): void {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { coloured.value += 1; });
 }
 
-export const colour = (name: string): string => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+// A plot asks for some in each frame: they are looked up once, until they change.
+const colours = new Map<string, string>();
+coloured.subscribe(() => colours.clear());
+
+export function colour(name: string): string {
+  const known = colours.get(name);
+  if (known) return known;
+  const found = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  colours.set(name, found);
+  return found;
+}
 
 // A view that is always light or always dark; what is returned gives the colours of this browser back.
 export function showAs(shown: Exclude<Theme, "system">): () => void {

@@ -5,7 +5,7 @@ import test from "node:test";
 import { channelsOf, layoutOf, layoutText, usualLayout, withChannel, type PlotSpec } from "../../../../hil/service/frontend/src/plot/layout.ts";
 import { digitsOf } from "../../../../hil/service/frontend/src/format.ts";
 import { decades, numbersFrom, numbersText, panned, rangeFrom, rangeOf, rangeText, zoomed } from "../../../../hil/service/frontend/src/plot/range.ts";
-import { nearest, Recent, tracesOf, valueAt } from "../../../../hil/service/frontend/src/plot/traces.ts";
+import { nearest, Recent, tracesOf, valueAt, thinned } from "../../../../hil/service/frontend/src/plot/traces.ts";
 
 const PLOTS: PlotSpec[] = [{ kind: "time", channels: ["a", "b"] }, { kind: "spectrum", channels: ["a"] }, { kind: "xy", channels: ["a", "b"] }, { kind: "time", channels: [] }];
 
@@ -86,4 +86,12 @@ test("a logarithmic axis that begins just below a decade has an end", () => {
   assert.deepEqual(decades(0.099995, 0.35), [0.1, 0.2, 0.3]);
   assert.equal(decades(0.099995, 28.3588).at(-1), 20);
   assert.deepEqual(decades(0, 10), []);
+});
+
+test("curves that are thinned for the screen keep every peak, and holes stay holes", () => {
+  const time = Array.from({ length: 10 }, (_, at) => at), highest = [0, 9, 1, 2, 3, 4, 5, null, null, null], lowest = [-1, 0, -7, 2, 3, 4, 5, null, null, null];
+  const found = thinned({ time, channels: { a: { lowest, highest } } }, 4);
+  assert.deepEqual(found.time, [1, 4, 7, 9]);
+  assert.deepEqual(found.channels["a"], { lowest: [-7, 2, 5, null], highest: [9, 4, 5, null] });
+  assert.equal(thinned({ time, channels: { a: { lowest, highest } } }, 10).time, time);
 });

@@ -63,6 +63,24 @@ def test_a_plan_is_foreseen_queued_watched_stopped_and_found(page: playwright.Pa
     expect(heading(page, "Free")).to_be_visible()
 
 
+def test_no_plan_is_chosen_beforehand_but_the_last_that_this_person_ran(
+    tmp_path: Path, page: playwright.Page
+) -> None:
+    with served(tmp_path / "data", "--rate", "1000", state=tmp_path / "state") as service:
+        to(page, service, "benches/sim")
+        plan = choice(page, "Plan")
+        expect(plan.locator("option", has_text="abs_release: Regeneration")).to_be_attached()
+        expect(plan).to_have_value("")
+        expect(page.get_by_role("button", name="Queue the run")).to_be_disabled()
+        plan.select_option("abs_release")
+        expect(page.get_by_text("About 51 s; largest torque asked for: 200")).to_contain_text("at the wheels")
+        service.give("short", SHORT)
+        service.over(service.queue("short"))
+        page.reload()
+        expect(plan).to_have_value("short")
+        page.goto("about:blank")
+
+
 def test_a_run_is_queued_and_ended_by_keyboard_alone(page: playwright.Page, there: Served) -> None:
     to(page, there, "benches/sim")
     plan = choice(page, "Plan")
@@ -266,6 +284,31 @@ def test_what_is_seen_of_a_run_stands_in_its_address(page: playwright.Page, ther
     expect(cursors).to_have_text(re.compile("shaft torque"))
     expect(plots.first).to_contain_text("wheel speed left")
     page.wait_for_function("text => document.querySelector('.cursors table')?.innerText === text", arg=seen)
+
+
+def test_a_cursor_that_is_dragged_is_written_to_the_address_at_rest_only(
+    page: playwright.Page, there: Served
+) -> None:
+    to(page, there, "runs/1?c=1")
+    cursors = page.get_by_role("region", name="Values at the cursors")
+    expect(cursors).to_contain_text("1.000")
+    page.evaluate(
+        """() => {
+          window.written = 0;
+          const replace = history.replaceState.bind(history);
+          history.replaceState = (...all) => { window.written += 1; replace(...all); };
+        }"""
+    )
+    page.wait_for_load_state("networkidle")
+    page.locator(".plot-place").first.focus()
+    for _ in range(8):
+        page.keyboard.press("ArrowRight")
+    expect(cursors).not_to_contain_text("1.000")
+    page.wait_for_function("() => window.written > 0")
+    assert page.evaluate("window.written") < 8
+    shown = cursors.locator("tbody tr").first.inner_text()
+    page.reload()
+    expect(cursors.locator("tbody tr").first).to_have_text(shown.replace("\t", ""))
 
 
 def test_a_run_is_asked_for_again_with_another_value(page: playwright.Page, there: Served) -> None:

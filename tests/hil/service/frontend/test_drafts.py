@@ -127,6 +127,57 @@ def test_another_text_that_was_saved_meanwhile_is_shown_before_it_is_replaced(
     assert there.get("/versions/plan/shared")[0]["number"] >= 3  # theirs is there, too
 
 
+def test_the_message_of_another_text_is_in_sight_and_has_the_focus(
+    page: playwright.Page, there: Served
+) -> None:
+    there.give("shared", FIRST)
+    to(page, there, "plans/shared?write=on")
+    _typed(page, "Text of the plan", "upper: 400", "upper: 377")
+    there.give("shared", FIRST.replace("upper: 400", "upper: 391"))
+    page.set_viewport_size({"width": 390, "height": 500})
+    page.get_by_role("button", name="Keep as shared").click()
+    notice = page.get_by_role("alert").filter(has_text="local saved shared")
+    expect(notice).to_be_in_viewport()
+    expect(notice).to_be_focused()
+    page.keyboard.press("Tab")
+    expect(page.get_by_role("button", name="Keep mine as the newer version")).to_be_focused()
+
+
+def test_what_is_saved_in_another_tab_takes_no_draft_away(browser: playwright.Browser, there: Served) -> None:
+    there.give("shared", FIRST)
+    with browser.new_context(locale="en-US") as context:
+        page, second = context.new_page(), context.new_page()
+        to(page, there, "plans/shared?write=on")
+        text = _typed(page, "Text of the plan", "upper: 400", "upper: 378")
+        to(second, there, "plans/shared?write=on")
+        _typed(second, "Text of the plan", "upper: 378", "upper: 379")  # what was typed is there, too
+        second.get_by_role("button", name="Keep as shared").click()
+        expect(heading(second, "shared")).to_be_visible()
+        page.on("dialog", lambda dialog: dialog.accept())
+        page.reload()
+        expect(text).to_have_value(re.compile("upper: 378"))
+        expect(page.get_by_text(_RESTORED)).to_be_visible()
+
+
+def test_a_draft_of_a_tab_that_was_closed_is_restored_in_another_once(
+    browser: playwright.Browser, there: Served
+) -> None:
+    there.give("shared", FIRST)
+    with browser.new_context(locale="en-US") as context:
+        first = context.new_page()
+        to(first, there, "plans/shared?write=on")
+        _typed(first, "Text of the plan", "upper: 400", "upper: 380")
+        first.close()
+        page = context.new_page()
+        to(page, there, "plans/shared?write=on")
+        text = page.get_by_label("Text of the plan")
+        expect(text).to_have_value(re.compile("upper: 380"))
+        page.once("dialog", lambda dialog: dialog.accept())
+        page.get_by_role("button", name="Discard it").click()
+        page.reload()
+        expect(text).to_have_value(re.compile("upper: 400"))
+
+
 def test_theirs_is_taken_and_written_on_from(page: playwright.Page, there: Served) -> None:
     there.give("shared", FIRST)
     to(page, there, "plans/shared?write=on")

@@ -14,6 +14,9 @@ from tests.hil.service.looks import refuse_hard_to_use
 from tests.hil.service.served import ASKING, SHORT, Served, served
 
 pytestmark = IN_A_BROWSER
+_UNSETTLED = SHORT.replace("name: short", "name: unsettled").replace("after_s: 1", "after_s: 2.1") + (
+    "  - {segment: s, metric: settling_shaft_torque, unit: s}\n"
+)
 _FAILING = SHORT.replace("name: short", "name: failing").replace("upper: 400", "upper: 90")
 
 
@@ -23,6 +26,7 @@ def there(tmp_path: Path) -> Iterator[Served]:
         service.give("short", SHORT)
         service.give("asking", ASKING)
         service.give("failing", _FAILING)
+        service.give("unsettled", _UNSETTLED)
         yield service
 
 
@@ -78,6 +82,22 @@ def test_a_failed_run_begins_with_the_criterion_that_failed_and_leads_to_its_pla
     expect(criteria).to_contain_text("s.peak_shaft_torque")
     criteria.get_by_text("What is measured").click()
     expect(criteria).to_contain_text("the value farthest in the step's direction")
+    refuse_hard_to_use(page)
+
+
+def test_a_passed_run_says_beside_its_verdict_that_a_quantity_did_not_settle(
+    page: playwright.Page, there: Served
+) -> None:
+    run = there.queue("unsettled")
+    assert there.over(run)["verdict"] == "pass"
+    criteria = {one["id"]: one["verdict"] for one in there.get(f"/runs/{run}/view")["criteria"]}
+    assert criteria["s.settling_shaft_torque"] == "did_not_settle"
+    to(page, there, f"runs/{run}")
+    expect(page.get_by_text("One measured quantity did not settle")).to_contain_text(
+        "counts neither for nor against the run: Settling time of the shaft torque in s."
+    )
+    page.get_by_role("link", name="Show them among the criteria").click()
+    expect(region(page, "Criteria").first.get_by_text("did not settle", exact=True)).to_be_in_viewport()
     refuse_hard_to_use(page)
 
 

@@ -65,6 +65,23 @@ def test_a_plan_is_written_anew_and_a_built_in_one_as_a_copy(page: playwright.Pa
     expect(page.get_by_role("button", name="Keep as acceptance_copy")).to_be_enabled()
 
 
+@pytest.mark.parametrize("name", ["n" * 100, "n" * 255, "プラン", "ein plan", "-plan"])
+def test_a_name_that_cannot_be_taken_is_said_and_the_rest_is_checked(
+    page: playwright.Page, there: Served, name: str
+) -> None:
+    to(page, there, "plans/short?write=on")
+    text = page.get_by_label("Text of the plan")
+    expect(text).to_have_value(re.compile("name: short"))
+    text.fill(SHORT.replace("name: short", f"name: {name}").replace("hold_speed:", "hold_sped:"))
+    expect(page.get_by_text(f"({len(name)} characters) is none.")).to_contain_text("has 1 to 64 letters")
+    expect(page.get_by_role("list", name="Mistakes")).to_contain_text("hold_sped")
+    expect(page.get_by_role("button", name="Keep the plan")).to_be_disabled()
+    text.fill(
+        text.input_value().replace("hold_sped:", "hold_speed:").replace(f"name: {name}", f"name: {'n' * 64}")
+    )
+    expect(page.get_by_role("button", name="Keep as nnnn")).to_be_enabled()
+
+
 def test_a_run_is_tagged_noted_and_found(page: playwright.Page, there: Served) -> None:
     to(page, there, "runs/1")
     notes = region(page, "Tags and notes")

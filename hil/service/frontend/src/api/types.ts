@@ -26,6 +26,7 @@ export type FoundRun = Schemas["FoundRun"];
 export type RunChoices = Schemas["RunChoices"];
 export type Trend = Schemas["TrendData"];
 export type Comparison = Schemas["ComparisonData"];
+export type BestRun = Schemas["BestRunData"];
 export type Model = Schemas["ModelData"];
 export type Controller = Schemas["ControllerData"];
 export type Study = Schemas["StudyData"];

@@ -1,6 +1,7 @@
 // Somebody else has saved what one is about to save: whose text is there, the difference, and the choice.
 
 import type { JSX } from "preact";
+import { useEffect, useRef } from "preact/hooks";
 import { get, getTagged, Refused } from "../api/client.ts";
 import type { Version } from "../api/types.ts";
 import { t, tx } from "../i18n/text.ts";
@@ -47,11 +48,15 @@ interface Options {
 }
 
 export function Conflict({ theirs, mine, keep, take }: Options): JSX.Element {
-  const isGone = theirs.by === "";
+  const isGone = theirs.by === "", notice = useRef<HTMLDivElement>(null);
+  useEffect(() => { // the button that was pressed may stand far below
+    notice.current?.closest("section")?.scrollIntoView();
+    notice.current?.focus({ preventScroll: true });
+  }, [theirs]);
   const said = isGone ? t("{name} was removed after you began to write.", { name: theirs.name }) : tx("{who} saved {name} {moment}, and your text does not have that in it. Nothing of yours is saved yet.", { who: theirs.by, name: theirs.name, moment: <Moment at={theirs.at} /> });
   return (
     <Section title={isGone ? t("It was removed meanwhile") : t("Another text was saved meanwhile")} label="conflict">
-      <div class="notice" role="alert">
+      <div class="notice" role="alert" tabIndex={-1} ref={notice}>
         <p>{said}</p>
         <div class="row level"><button type="button" onClick={keep.do}>{keep.name}</button>{isGone ? null : <button type="button" onClick={take}>{t("Discard mine and take theirs")}</button>}</div>
       </div>

@@ -1,14 +1,47 @@
-// What somebody types and has not saved, kept in this browser for each person and item: it survives a reload.
+// What somebody types and has not saved, kept in this browser for each person, item and tab: it survives a reload.
 
 export interface Draft<T> {
   at: string; // when it was typed last, ISO 8601
   value: T;
 }
 
-const PREFIX = "hil.draft";
+const PREFIX = "hil.draft", TAB = "hil.tab";
 const KEPT_MS = 60 * 24 * 3_600_000;
 
-export const draftKey = (person: string, item: string): string => [PREFIX, person, item].map(encodeURIComponent).join("/");
+// Each tab has its own: what one saves or types takes nothing from another.
+export const draftKey = (person: string, item: string, tab: string): string => [PREFIX, person, item, tab].map(encodeURIComponent).join("/");
+
+// Stays while its tab is open, over reloads.
+export function tabOf(store: Storage): string {
+  try {
+    const known = store.getItem(TAB), tab = known ?? Math.random().toString(36).slice(2);
+    if (known === null) store.setItem(TAB, tab);
+    return tab;
+  } catch { // a browser that keeps nothing
+    return "";
+  }
+}
+
+// That of the tab, else the newest of the others, which becomes this tab's: theirs may be closed. One that is open
+// keeps its own again when it hears that it is gone.
+export function takeDraft<T>(store: Storage, key: string): Draft<T> | null {
+  const own = readDraft<T>(store, key);
+  if (own) return own;
+  const others = keysOf(store).filter((one) => one.startsWith(key.slice(0, key.lastIndexOf("/") + 1)));
+  const found = others.map((one) => ({ one, draft: readDraft<T>(store, one) })).sort((a, b) => (b.draft?.at ?? "").localeCompare(a.draft?.at ?? ""))[0];
+  if (!found?.draft) return null;
+  forgetDraft(store, found.one);
+  keepDraft(store, key, found.draft.value, new Date(found.draft.at));
+  return found.draft;
+}
+
+function keysOf(store: Storage): string[] {
+  try {
+    return Array.from({ length: store.length }, (_, at) => store.key(at) ?? "");
+  } catch {
+    return [];
+  }
+}
 
 export function readDraft<T>(store: Storage, key: string): Draft<T> | null {
   try {
@@ -41,7 +74,7 @@ export function forgetDraft(store: Storage, key: string): void {
 // Those that were forgotten about, whoever's they are.
 export function forgetOld(store: Storage, now: Date): void {
   try {
-    const keys = Array.from({ length: store.length }, (_, at) => store.key(at) ?? "").filter((key) => key.startsWith(`${PREFIX}/`));
+    const keys = keysOf(store).filter((key) => key.startsWith(`${PREFIX}/`));
     for (const key of keys) {
       const at = Date.parse(readDraft(store, key)?.at ?? "");
       if (!(now.getTime() - at < KEPT_MS)) forgetDraft(store, key);

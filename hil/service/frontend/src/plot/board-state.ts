@@ -30,15 +30,16 @@ export function useBoardState(plan: string, channels: readonly string[], live: b
   const plots = useMemo(() => (text ? layoutOf(text).map((plot) => ({ ...plot, channels: plot.channels.filter((one) => channels.includes(one)) })) : usualLayout(channels)), [text, known]);
   const time = query.get("t"), marks = query.get("c");
   const [moving, setMoving] = useState<Shown | null>(null); // of a live board, while it moves
-  const resting = useRef(0);
+  const resting = useRef(0), dropping = useRef(0);
+  const [dragged, setDragged] = useState<number[] | null>(null); // cursors, while one moves
   const inAddress = useMemo(() => rangeFrom(time) ?? (live ? { follow: FOLLOW_S } : "whole" as const), [time, live]);
-  const cursors = useMemo(() => numbersFrom(marks), [marks]);
+  const inText = useMemo(() => numbersFrom(marks), [marks]), cursors = dragged ?? inText;
   const put = useCallback((name: string, value: string | null) => {
     const changed = new URLSearchParams(location.search);
     if (value) changed.set(name, value); else changed.delete(name);
     setQuery(changed);
   }, []);
-  useEffect(() => () => clearTimeout(resting.current), []);
+  useEffect(() => () => { clearTimeout(resting.current); clearTimeout(dropping.current); }, []);
   const rest = (changed: Shown) => {
     clearTimeout(resting.current);
     resting.current = window.setTimeout(() => {
@@ -61,7 +62,11 @@ export function useBoardState(plan: string, channels: readonly string[], live: b
     },
     setCursors: (changed, which) => {
       if (which !== undefined) setChosen(which);
-      put("c", numbersText(changed));
+      clearTimeout(dropping.current);
+      const drop = () => { put("c", numbersText(changed)); setDragged(null); };
+      if (changed.length !== cursors.length) { drop(); return; }
+      setDragged(changed);
+      dropping.current = window.setTimeout(drop, REST_MS);
     },
     reset: () => {
       keep("");

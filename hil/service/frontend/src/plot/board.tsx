@@ -5,7 +5,7 @@ import { useMemo, useRef, useState } from "preact/hooks";
 import type { LimitLine, Mark, RunView } from "../api/types.ts";
 import { t } from "../i18n/text.ts";
 import { useLive, type Live } from "../live.ts";
-import { useStore } from "../store.ts";
+import { Store, useStore } from "../store.ts";
 import { useBoardState } from "./board-state.ts";
 import { ChannelList } from "./channel-list.tsx";
 import { CursorTable } from "./cursor-table.tsx";
@@ -28,14 +28,14 @@ export function Board({ view, plan, bench }: BoardOptions): JSX.Element {
   const live = useLive(bench, channels);
   const marks = useMarks(live, view);
   const source = useSource({ run: view.run, live: bench === null ? null : live, channels, shown: state.shown, first: view.first_s, last: view.last_s });
-  const [hover, setHover] = useState<number | null>(null);
+  const [hover] = useState(() => new Store<number | null>(null)); // the pointer moves in every frame
   const board = useRef<HTMLDivElement>(null);
   const setRange = ({ from, to }: Range) => {
     if (bench === null) source.range.value = { from, to }; // plots move at once, everything else when they rest
     state.setShown({ from, to });
   };
   const follow = bench !== null && isFollowing(state.shown);
-  const addCursor = () => state.setCursors([...state.cursors, hover ?? placeOf(source.range.value, state.cursors.length)].slice(0, 6), state.cursors.length);
+  const addCursor = () => state.setCursors([...state.cursors, hover.value ?? placeOf(source.range.value, state.cursors.length)].slice(0, 6), state.cursors.length);
   const moveCursor = (which: number, at: number) => state.setCursors(state.cursors.map((one, number) => (number === which ? at : one)), which);
   const keyed = (event: KeyboardEvent) => {
     if (event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement || event.ctrlKey || event.metaKey || event.altKey) return;
@@ -64,7 +64,7 @@ export function Board({ view, plan, bench }: BoardOptions): JSX.Element {
           {state.plots.map((plot, at) => (
             <PlotCard
               key={`${at} ${plot.kind}`} plot={plot} number={at + 1} view={view} marks={marks} limits={limits} source={source} following={follow} hover={hover}
-              cursors={state.cursors} chosen={state.chosen} onRange={setRange} onCursor={moveCursor} onHover={setHover}
+              cursors={state.cursors} chosen={state.chosen} onRange={setRange} onCursor={moveCursor} onHover={(at) => { hover.value = at; }}
               onDrop={(channel) => change(at, withChannel(plot, channel))} onTake={(channel) => change(at, withoutChannel(plot, channel))} onRemove={() => change(at, null)}
             />
           ))}

@@ -36,6 +36,17 @@ export function roomy(low: number | null, high: number | null): [number, number]
   return [low - 0.06 * room, high + 0.1 * room];
 }
 
+// Draws when an element is in sight, and what was left out meanwhile once it comes into sight.
+export function inSight(element: HTMLElement, draw: () => void): { ask: () => void; stop: () => void } {
+  let seen = true, left = false;
+  const observer = new IntersectionObserver(([one]) => {
+    seen = one?.isIntersecting ?? true;
+    if (seen && left) { left = false; draw(); }
+  }, { rootMargin: "100px" });
+  observer.observe(element);
+  return { ask: () => { if (seen) draw(); else left = true; }, stop: () => observer.disconnect() };
+}
+
 // Calls with the width of an element whenever that changes.
 export function onWidth(element: HTMLElement, take: (width: number) => void): () => void {
   const observer = new ResizeObserver(() => { if (element.clientWidth > 0) take(element.clientWidth); });

@@ -5,7 +5,7 @@ import { useState } from "preact/hooks";
 import type { LimitLine, Mark, RunView } from "../api/types.ts";
 import { figure, wordsOf } from "../format.ts";
 import { t } from "../i18n/text.ts";
-import { useStore } from "../store.ts";
+import { useStore, type Store } from "../store.ts";
 import { roleOf } from "./frame.ts";
 import type { PlotSpec } from "./layout.ts";
 import type { Range } from "./range.ts";
@@ -26,7 +26,7 @@ interface Options {
   limits: LimitLine[];
   source: Source;
   following: boolean;
-  hover: number | null;
+  hover: Store<number | null>;
   cursors: number[];
   chosen: number;
   onRange: (range: Range) => void;
@@ -58,7 +58,7 @@ export function PlotCard(options: Options): JSX.Element {
       onDragOver={(event) => { if (event.dataTransfer?.types.includes(DRAGGED)) { event.preventDefault(); setOver(true); } }} onDragLeave={() => setOver(false)} onDrop={drop}>
       <figcaption class="small">
         {plot.kind === "time" ? null : <b>{`${KINDS[plot.kind]}: `}</b>}
-        {plot.channels.map((channel, at) => <Chip key={channel} channel={channel} role={plot.kind === "time" ? roleOf(at) : ""} unit={view.channels[channel] ?? ""} source={source} at={hover} onTake={() => options.onTake(channel)} />)}
+        {plot.channels.map((channel, at) => <Chip key={channel} channel={channel} role={plot.kind === "time" ? roleOf(at) : ""} unit={view.channels[channel] ?? ""} source={source} hover={hover} onTake={() => options.onTake(channel)} />)}
         <span class="plot-buttons">
           <select aria-label={t("Add a channel to plot {number}", { number })} value="" onChange={(event) => { options.onDrop(event.currentTarget.value); event.currentTarget.value = ""; }}>
             <option value="" disabled>{t("Channel …")}</option>
@@ -77,7 +77,8 @@ export function PlotCard(options: Options): JSX.Element {
   );
 }
 
-function Chip({ channel, role, unit, source, at, onTake }: { channel: string; role: string; unit: string; source: Source; at: number | null; onTake: () => void }): JSX.Element {
+function Chip({ channel, role, unit, source, hover, onTake }: { channel: string; role: string; unit: string; source: Source; hover: Store<number | null>; onTake: () => void }): JSX.Element {
+  const at = useStore(hover);
   const traces = useStore(at === null ? source.newest : source.traces);
   const value = valueAt(traces, channel, at ?? traces.time.at(-1) ?? 0);
   const text = !value ? "" : value.lowest === value.highest ? figure(value.lowest, unit) : at === null ? figure(value.highest, unit) : `${figure(value.lowest)} … ${figure(value.highest, unit)}`;

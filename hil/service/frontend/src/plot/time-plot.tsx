@@ -7,9 +7,9 @@ import type { LimitLine, Mark } from "../api/types.ts";
 import type { Store } from "../store.ts";
 import { colour, coloured } from "../theme.ts";
 import { drawCursors, drawLimits, drawMarks } from "./canvas.ts";
-import { axis, HEIGHT, onWidth, roleOf, roomy } from "./frame.ts";
+import { axis, HEIGHT, inSight, onWidth, roleOf, roomy } from "./frame.ts";
 import { panned, zoomed, type Range } from "./range.ts";
-import type { Traces } from "./traces.ts";
+import { thinned, type Traces } from "./traces.ts";
 
 export interface TimePlotOptions {
   channels: string[];
@@ -38,15 +38,20 @@ export function TimePlot(options: TimePlotOptions): JSX.Element {
     const element = place.current as HTMLDivElement;
     const made = make(element, now);
     plot.current = made;
-    const show = () => made.setData(dataOf(now.current.channels, traces.value), true);
+    const drawing = inSight(element, () => {
+      const data = dataOf(now.current, made);
+      if (made.data === data) made.setScale("x", { min: range.value.from, max: range.value.to });
+      else made.setData(data, true);
+    });
     const stops = [
-      traces.subscribe(show),
-      range.subscribe(show),
+      drawing.stop,
+      traces.subscribe(drawing.ask),
+      range.subscribe(drawing.ask),
       coloured.subscribe(() => made.redraw(false, true)),
-      onWidth(element, (width) => made.setSize({ width, height: HEIGHT })),
+      onWidth(element, (width) => { made.setSize({ width, height: HEIGHT }); drawing.ask(); }),
       listenToWheel(made, now),
     ];
-    show();
+    drawing.ask();
     return () => { stops.forEach((stop) => stop()); made.destroy(); plot.current = null; };
   }, [shape, traces, range]);
   const { marks, limits, cursors, chosen } = options;
@@ -78,12 +83,27 @@ function make(element: HTMLElement, now: Now): uPlot {
       draw: [(plot) => decorate(plot, now.current)],
     },
   };
-  return new uPlot(options, dataOf(channels, now.current.traces.value), element);
+  return new uPlot(options, [[], ...channels.flatMap(() => [[], []])], element);
 }
 
 const seriesOf = (unit: string, at: number): uPlot.Series => ({ scale: unit || "none", stroke: () => colour(`series-${roleOf(at)}`), width: 1.3, points: { size: 4 } });
 
-function dataOf(channels: string[], traces: Traces): uPlot.AlignedData {
+const PLACES = 1.3; // for each pixel of what is shown, as more than that was asked for
+
+// The same again while neither traces nor width have changed: then only the range moves.
+function dataOf({ channels, traces, range }: TimePlotOptions, plot: uPlot): uPlot.AlignedData {
+  const { from, to } = range.value, most = PLACES * plot.bbox.width;
+  const known = drawn.get(plot);
+  if (known && known.of === traces.value && known.channels === channels.join() && known.most === most) return known.data;
+  const time = traces.value.time, width = ((time.at(-1) ?? 0) - (time[0] ?? 0)) / Math.max(1e-9, to - from);
+  const data = aligned(channels, most > 0 ? thinned(traces.value, most * Math.max(1, width)) : traces.value);
+  drawn.set(plot, { of: traces.value, channels: channels.join(), most, data });
+  return data;
+}
+
+const drawn = new WeakMap<uPlot, { of: Traces; channels: string; most: number; data: uPlot.AlignedData }>();
+
+function aligned(channels: string[], traces: Traces): uPlot.AlignedData {
   const empty = traces.time.map(() => null);
   return [traces.time, ...channels.flatMap((channel) => [traces.channels[channel]?.highest ?? empty, traces.channels[channel]?.lowest ?? empty])];
 }

@@ -64,6 +64,22 @@ function before(traces: Traces, start: number): Traces {
   return { time: traces.time.slice(0, end), channels: Object.fromEntries(Object.entries(traces.channels).map(([name, trace]) => [name, cut(trace)])) };
 }
 
+// At most so many places, each with the lowest and the highest of those that it is made of: a screen shows no more.
+// They are counted from the first, so that a curve that is moved keeps its shape.
+export function thinned({ time, channels }: Traces, most: number): Traces {
+  const by = Math.ceil(time.length / Math.max(1, most));
+  if (by <= 1) return { time, channels };
+  const count = Math.ceil(time.length / by);
+  const merged = (values: Values, extreme: (...values: number[]) => number): Values => Array.from({ length: count }, (_, at) => {
+    const there = values.slice(at * by, (at + 1) * by).filter((one): one is number => one !== null);
+    return there.length ? extreme(...there) : null;
+  });
+  return {
+    time: Array.from({ length: count }, (_, at) => 0.5 * ((time[at * by] as number) + (time[Math.min(time.length, (at + 1) * by) - 1] as number))),
+    channels: Object.fromEntries(Object.entries(channels).map(([name, { lowest, highest }]) => [name, { lowest: merged(lowest, Math.min), highest: merged(highest, Math.max) }])),
+  };
+}
+
 // Where a time lies among sorted ones: the nearest.
 export function nearest(time: readonly number[], at: number): number {
   let low = 0, high = time.length - 1;

@@ -4,6 +4,7 @@ import type { ComponentChildren, JSX } from "preact";
 import { useState } from "preact/hooks";
 import { moment } from "../format.ts";
 import { English } from "../i18n/english.tsx";
+import { placeOf, titleOf } from "../addresses.ts";
 import type { Asked } from "../data.ts";
 import type { Run } from "../api/types.ts";
 import { kindInWords } from "./kinds.ts";
@@ -50,10 +51,10 @@ export function Scroll({ label, children }: { label: string; children: Component
   return <div class="scroll" tabIndex={0} role="region" aria-label={t("{label}, table", { label })}>{children}</div>;
 }
 
-// What was asked for, or why it is not there.
-export function Loaded<T>({ of, children, what }: { of: Asked<T>; what: string; children: (data: T) => ComponentChildren }): JSX.Element {
+// What was asked for, or why it is not there; a whole view has a heading then, too.
+export function Loaded<T>({ of, children, what, whole = false }: { of: Asked<T>; what: string; whole?: boolean; children: (data: T) => ComponentChildren }): JSX.Element {
   if (of.data !== null) return <>{children(of.data)}</>;
-  if (of.error) return <p class="bad" role="alert"><English>{of.error.message}</English></p>;
+  if (of.error) return <>{whole ? <Heading>{titleOf(placeOf(location.pathname))}</Heading> : null}<p class="bad" role="alert"><English>{of.error.message}</English></p></>;
   return <p class="quiet">{t("Loading {what} …", { what })}</p>;
 }
 

@@ -1,4 +1,4 @@
-// Runs of one plan side by side: what they were given differently, traces from the step, criteria with differences.
+// Runs side by side: what they were given differently, traces from the step, criteria with differences.
 
 import type { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
@@ -6,9 +6,9 @@ import { get } from "../api/client.ts";
 import type { Comparison, FoundRuns, Run, RunView } from "../api/types.ts";
 import { to } from "../addresses.ts";
 import { useData } from "../data.ts";
-import { moment } from "../format.ts";
+import { joined, moment } from "../format.ts";
 import { English } from "../i18n/english.tsx";
-import { t, tx } from "../i18n/text.ts";
+import { t, tn, tx } from "../i18n/text.ts";
 import { roleOf } from "../plot/frame.ts";
 import { useQuery } from "../router.ts";
 import { kindInWords } from "../ui/kinds.ts";
@@ -41,17 +41,26 @@ export function Compare(): JSX.Element {
       <Heading>{t("Compare runs")}</Heading>
       <Choose runs={runs} onChange={set} />
       {runs.length ? <ChooseRecordings chosen={beside} runs={runs.length} onChange={setBeside} /> : null}
-      {runs.length >= 2 || (runs.length && beside.length) ? <Compared key={runs.join()} runs={runs} beside={beside} query={query} setQuery={setQuery} /> : <p class="quiet">{tx("Choose two runs or more of one plan; in the <a>table of runs</a> they can be ticked.", { a: linkTo(to.list("runs")) })}</p>}
+      {runs.length >= 2 || (runs.length && beside.length) ? <Compared key={runs.join()} runs={runs} beside={beside} query={query} setQuery={setQuery} /> : <p class="quiet">{tx("Choose two runs or more, of one plan or of its copies; in the <a>table of runs</a> they can be ticked.", { a: linkTo(to.list("runs")) })}</p>}
     </>
   );
 }
 
 const named = (run: Run): string => `${run.id}: ${run.title || run.plan}, ${kindInWords(run.verdict ?? run.state)}${run.ended_at ? `, ${moment(run.ended_at)}` : ""}`;
 
+const OFFERED = [["state", "ended"], ["state", "interrupted"], ["most", "100"]];
+
+function useOffered(more: string[][] | null, without: number[]): { runs: Run[]; loading: boolean } {
+  const found = useData<FoundRuns>(more && `/run-list?${new URLSearchParams([...OFFERED, ...more])}`);
+  return { runs: found.data?.runs.map(({ run }) => run).filter((run) => !without.includes(run.id)) ?? [], loading: found.loading };
+}
+
 function Choose({ runs, onChange }: { runs: number[]; onChange: (runs: number[]) => void }): JSX.Element {
   const first = useData<Run>(runs[0] ? `/runs/${runs[0]}` : null).data;
-  const query = new URLSearchParams([["state", "ended"], ["state", "interrupted"], ["most", "100"], ...(first ? [["plan", first.plan]] : [])] as string[][]);
-  const offered = useData<FoundRuns>(`/run-list?${query}`).data?.runs.map(({ run }) => run).filter((run) => !runs.includes(run.id)) ?? [];
+  const ofPlan = useOffered(first ? [["plan", first.plan]] : null, runs), all = useOffered([], runs);
+  const others = first ? all.runs.filter((run) => run.plan !== first.plan) : all.runs;
+  const isEmpty = !ofPlan.runs.length && !others.length && !ofPlan.loading && !all.loading;
+  const options = (offered: Run[]) => offered.map((run) => <option key={run.id} value={run.id}>{named(run)}</option>);
   return (
     <div class="row small">
       {runs.map((run, at) => (
@@ -59,11 +68,12 @@ function Choose({ runs, onChange }: { runs: number[]; onChange: (runs: number[])
           <button type="button" class="plain" aria-label={t("Leave out run {run}", { run })} onClick={() => onChange(runs.filter((one) => one !== run))}>×</button>
         </span>
       ))}
-      {runs.length < MOST ? (
+      {runs.length < MOST && isEmpty ? <p class="quiet">{runs.length ? t("No other run has ended yet: run this plan, or a changed copy of it, then compare.") : t("No run has ended yet.")}</p> : null}
+      {runs.length < MOST && !isEmpty ? (
         <label>{runs.length ? t("and") : t("A run")}{" "}
           <select value="" onChange={(event) => onChange([...runs, Number(event.currentTarget.value)])}>
             <option value="" disabled>{t("choose …")}</option>
-            {offered.map((run) => <option key={run.id} value={run.id}>{named(run)}</option>)}
+            {first ? <><optgroup label={t("runs of {plan}", { plan: first.plan })}>{ofPlan.runs.length ? options(ofPlan.runs) : <option disabled>{t("none that has ended")}</option>}</optgroup><optgroup label={t("runs of other plans")}>{options(others)}</optgroup></> : options(others)}
           </select>
         </label>
       ) : null}
@@ -115,7 +125,7 @@ function Compared({ runs, beside, query, setQuery }: { runs: number[]; beside: B
   const { views, pairs, error } = useFound(runs);
   if (error) return <p class="bad" role="alert"><English>{error}</English></p>;
   if (!views) return <p class="quiet">{t("Loading the runs …")}</p>;
-  const segments = segmentsOf(views);
+  const segments = segmentsOf(views).filter(({ id }) => !pairs || pairs.every((pair) => pair.segments.some((one) => one.id === id)));
   const segment = segments.find((one) => one.id === query.get("segment")) ?? segments[0];
   const near = query.get("stretch") !== "whole";
   const put = (name: string, value: string) => {
@@ -140,11 +150,16 @@ function Compared({ runs, beside, query, setQuery }: { runs: number[]; beside: B
           </div>
           <div class="plots part">{channels.map((channel) => <ComparePlot key={channel} channel={channel} unit={views[0]?.channels[channel] ?? ""} stretches={stretches} />)}</div>
         </Section>
-      ) : null}
+      ) : <p class="quiet">{t("No segment of the same name and kind is in all of these runs: their traces cannot be laid over each other.")}</p>}
       {pairs?.length ? <ComparedCriteria pairs={pairs} /> : null}
     </>
   );
 }
+
+type Difference = Comparison["differences"][number];
+
+const NOTHING = "–";
+const valueOf = (text: string, unit = ""): string => (text === NOTHING ? text : joined(text, unit));
 
 function Lead({ pair }: { pair: Comparison }): JSX.Element {
   const { first, other, criteria, notes } = pair, changes = criteria.map(changeOf).filter((one) => one !== null);
@@ -153,7 +168,29 @@ function Lead({ pair }: { pair: Comparison }): JSX.Element {
     <>
       <p>{changes.length === 0 ? t("No criterion has a value in both runs {first} and {other}.", { first: first.id, other: other.id })
         : t("Criteria of run {other} against run {first}: {better} better, {worse} worse, {same} the same, {open} without a direction.", { other: other.id, first: first.id, better: count("better"), worse: count("worse"), same: count("same"), open: count("open") })}</p>
+      <PlanDiffers pair={pair} />
       {notes.map((note) => <p class="quiet" key={note}><English>{note}</English></p>)}
+    </>
+  );
+}
+
+const SAID = 4;
+const NAMES = ["name", "title", "description"]; // called otherwise, not otherwise done
+
+// What is done otherwise, in a sentence for each value; the table below has all of them.
+function PlanDiffers({ pair: { other, differences } }: { pair: Comparison }): JSX.Element | null {
+  const ones = differences.filter((one) => one.kind === "plan" && !NAMES.includes(one.name));
+  if (!ones.length) return null;
+  const text = ({ name, first, other: its, unit }: Difference): string =>
+    first === NOTHING ? t("{what} is only in run {run}", { what: name, run: other.id }) : its === NOTHING ? t("{what} is not in run {run}", { what: name, run: other.id })
+      : t("{what} {other} instead of {first}", { what: name, other: its, first: joined(first, unit ?? "") });
+  return (
+    <>
+      <p>{t("The plan of run {run} differs:", { run: other.id })}</p>
+      <ul class="differs">
+        {ones.slice(0, SAID).map((one) => <li key={one.name}>{text(one)}</li>)}
+        {ones.length > SAID ? <li>{tn("{count} more difference, in the table", "{count} more differences, in the table", ones.length - SAID)}</li> : null}
+      </ul>
     </>
   );
 }
@@ -163,8 +200,8 @@ function Differences({ pairs }: { pairs: Comparison[] }): JSX.Element {
   const rows = new Map<string, { kind: string; name: string; first: string; others: Map<number, string> }>();
   for (const pair of pairs) {
     for (const one of pair.differences) {
-      const key = `${one.kind} ${one.name}`, row = rows.get(key) ?? { kind: one.kind, name: one.name, first: one.first, others: new Map<number, string>() };
-      row.others.set(pair.other.id, one.other);
+      const key = `${one.kind} ${one.name}`, row = rows.get(key) ?? { kind: one.kind, name: one.name, first: valueOf(one.first, one.unit), others: new Map<number, string>() };
+      row.others.set(pair.other.id, valueOf(one.other, one.unit));
       rows.set(key, row);
     }
   }

@@ -36,13 +36,16 @@ export function Wall({ bench }: { bench: string | null }): JSX.Element {
 
 const useBegan = (): number => useState(() => performance.now())[0];
 
+// How wide a word is in Latin letters: those of Chinese and Japanese are about twice as wide.
+const lettersOf = (word: string): number => [...word].reduce((sum, letter) => sum + (letter > "\u2e7f" ? 1.8 : 1), 0);
+
 function Card({ of: { bench, running, queue, latest }, nowMs, alone }: { of: Shown; nowMs: number; alone: boolean }): JSX.Element {
   const left = leftOf(bench, running, nowMs);
   const next = nextIn(queue), has = running?.requested_by || holderOf(bench);
   return (
     <li class={`bench ${lookOf(bench, running)}`}>
       <h2><a href={to.wall(bench.name)}>{bench.name}</a> {bench.title ? <small>{bench.title}</small> : null}</h2>
-      <p class={isReserved(bench) ? "state long" : "state"}>{wallWordOf(bench, running)}</p>
+      <p class="state" style={{ "--letters": lettersOf(wallWordOf(bench, running)) }}>{wallWordOf(bench, running)}</p>
       {bench.stop_confirmed === false ? <p class="bad">{headlineOf(bench, null)}</p> : null}
       {has ? <p>{running ? t("by {person}", { person: has }) : isReserved(bench) ? reservedText(bench) : t("reserved by {person}", { person: has })}</p> : null}
       {running ? (

@@ -18,7 +18,7 @@ const NAMES: Record<string, string> = { "report.html": t("report"), "report.pdf"
 
 export function CampaignView({ id }: { id: number }): JSX.Element {
   const campaign = useData<Campaign>(`/campaigns/${id}`, AGAIN_MS);
-  return <Loaded of={campaign} what={t("campaign {number}", { number: id })}>{(found) => <Found campaign={found} />}</Loaded>;
+  return <Loaded whole of={campaign} what={t("campaign {number}", { number: id })}>{(found) => <Found campaign={found} />}</Loaded>;
 }
 
 function Found({ campaign }: { campaign: Campaign }): JSX.Element {

@@ -7,6 +7,7 @@ import { figure, fixed, percent, significant } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
 import { t, tn } from "../../i18n/text.ts";
 import { Badge, inWords, Scroll } from "../../ui/parts.tsx";
+import { listed } from "../plans/plan-facts.ts";
 import { useRested } from "./use-rested.ts";
 
 type Row = SegmentsData["segments"][number];
@@ -27,7 +28,7 @@ export function SegmentMargins({ name, body, plan, onPlan }: Options): JSX.Eleme
       <label class="field">{t("Plan")}
         <select value={plan} onChange={(event) => onPlan(event.currentTarget.value)}>
           <option value="">{t("none")}</option>
-          {plans.map((one) => <option key={one.name} value={one.name}>{one.title || one.name}</option>)}
+          {plans.map((one) => <option key={one.name} value={one.name}>{listed(one)}</option>)}
         </select>
       </label>
       <div aria-live="polite">

@@ -14,7 +14,7 @@ import { useDraft } from "../../editor/use-draft.ts";
 import { t } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { Section } from "../../ui/parts.tsx";
-import { nameIn } from "./plan-text.ts";
+import { nameIn, writtenName } from "./plan-text.ts";
 import { WrittenForecast } from "./written-forecast.tsx";
 
 interface Start {
@@ -34,7 +34,7 @@ export function PlanEditor({ text: given, tag: givenTag, item, builtIn, basedOn 
   const draft = useDraft<Start>(item, { text: given, tag: givenTag }, (one) => one.text === given), { text, tag } = draft.value;
   const [theirs, setTheirs] = useState<Theirs | null>(null), name = nameIn(text);
   const setText = (typed: string) => draft.set({ text: typed, tag });
-  const checked = useCheck<PlanCheck>("/plan-checks", name === null ? null : { name, text });
+  const checked = useCheck<PlanCheck>("/plan-checks", { name: name ?? UNNAMED, text });
   const check = checked.text === text ? checked.check : null, sound = check !== null && !check.mistakes.length;
   const keep = (insteadOf: string) => attempt(async () => {
     if (name === null) return;
@@ -52,20 +52,25 @@ export function PlanEditor({ text: given, tag: givenTag, item, builtIn, basedOn 
     if (theirs.name === basedOn && onTaken) onTaken(theirs);
     else go(to.plan(theirs.name));
   };
-  const action = { name: name ? t("Keep as {name}", { name }) : t("Keep the plan"), missing: name === null ? t("The plan says no name yet.") : "", do: () => void keep(name === basedOn ? tag : "") };
+  const action = { name: name ? t("Keep as {name}", { name }) : t("Keep the plan"), missing: name === null ? whyNoName(writtenName(text)) : "", do: () => void keep(name === basedOn ? tag : "") };
   return (
     <>
       <DraftNotice of={draft} changed={tag !== givenTag} />
       {theirs ? <Conflict theirs={theirs} mine={text} keep={{ name: t("Keep mine as the newer version"), do: () => void keep(theirs.tag) }} take={take} /> : null}
-      <div class="columns">
+      <div class="columns even">
         <TextEditor label={t("Text of the plan")} kind="yaml" schema="plan" text={text} onText={setText} checked={checked} keep={action}>
           {builtIn ? <p class="quiet">{t("A built-in plan stays as it is: this becomes a plan of its own.")}</p> : null}
         </TextEditor>
-        <div><Section title={t("What it would do")} label="forecast"><WrittenForecast plan={sound ? (check.plan ?? null) : null} text={text} /></Section></div>
+        <div><Section title={t("What it would do")} label="forecast"><WrittenForecast plan={sound && name !== null ? (check.plan ?? null) : null} text={text} /></Section></div>
       </div>
     </>
   );
 }
+
+const UNNAMED = "unnamed"; // so that the rest is checked
+
+const whyNoName = (written: string): string => (written ? t("A plan's name has 1 to 64 letters from A to Z, digits, _, . and -, and begins with a letter or digit: \"{name}\" ({count} characters) is none.", { name: shortened(written), count: [...written].length }) : t("The plan says no name yet."));
+const shortened = (name: string): string => ([...name].length > 24 ? `${[...name].slice(0, 20).join("")}…` : name);
 
 interface EditOptions {
   name: string;

@@ -17,5 +17,8 @@ const NAME = /^name:[ \t]*["']?([A-Za-z0-9][A-Za-z0-9_.-]{0,63})["']?[ \t]*(?:#.
 // Null where it says none that the service would take.
 export const nameIn = (text: string): string | null => NAME.exec(text)?.[1] ?? null;
 
+// What stands where a plan's name belongs; '' where nothing does.
+export const writtenName = (text: string): string => /^name:[ \t]*(.*?)[ \t]*(?:#.*)?$/m.exec(text)?.[1]?.replace(/^(["'])(.*)\1$/, "$2") ?? "";
+
 // A copy of a plan that is built in has a name of its own.
 export const renamed = (text: string, name: string): string => text.replace(NAME, `name: ${name}`);

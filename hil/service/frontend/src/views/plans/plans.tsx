@@ -15,6 +15,7 @@ import { useMay } from "../../session.ts";
 import { Heading, Loaded, Scroll, Section } from "../../ui/parts.tsx";
 import { UseController } from "../design/use-controller.tsx";
 import { EditPlan, PlanEditor } from "./plan-editor.tsx";
+import { durationOf, torquesOf } from "./plan-facts.ts";
 import { renamed, START } from "./plan-text.ts";
 import { valuesFrom } from "./start-values.ts";
 import { StartPlan } from "./start-plan.tsx";
@@ -32,11 +33,11 @@ export function Plans(): JSX.Element {
         {(all) => (
           <Scroll label={t("Plans")}>
             <table>
-              <thead><tr><th scope="col">{t("plan")}</th><th scope="col">{t("title")}</th><th scope="col">{t("origin")}</th><th scope="col" class="number">{t("variables")}</th></tr></thead>
+              <thead><tr><th scope="col">{t("plan")}</th><th scope="col">{t("title")}</th><th scope="col">{t("origin")}</th><th scope="col" class="number">{t("duration")}</th><th scope="col">{t("largest torque")}</th><th scope="col" class="number">{t("variables")}</th></tr></thead>
               <tbody>
                 {all.map((plan) => (
                   <tr key={plan.name}><th scope="row"><a href={to.plan(plan.name)}>{plan.name}</a></th>
-                    <td>{plan.title}{plan.hazard ? <span class="bad"> {t("hazardous: {hazard}", { hazard: plan.hazard })}</span> : null}</td><td>{plan.built_in ? t("built in") : t("given")}</td><td class="number">{Object.keys(plan.variables).length}</td>
+                    <td>{plan.title}{plan.hazard ? <span class="bad"> {t("hazardous: {hazard}", { hazard: plan.hazard })}</span> : null}</td><td>{plan.built_in ? t("built in") : t("given")}</td><td class="number">{durationOf(plan)}</td><td>{torquesOf(plan)}</td><td class="number">{Object.keys(plan.variables).length}</td>
                   </tr>
                 ))}
               </tbody>
@@ -53,7 +54,7 @@ export function Plans(): JSX.Element {
 
 export function PlanView({ name }: { name: string }): JSX.Element {
   const plan = useData<Plan>(`/plans/${encodeURIComponent(name)}`);
-  return <Loaded of={plan} what={t("plan {name}", { name })}>{(found) => <Found plan={found} onSaved={plan.again} />}</Loaded>;
+  return <Loaded whole of={plan} what={t("plan {name}", { name })}>{(found) => <Found plan={found} onSaved={plan.again} />}</Loaded>;
 }
 
 function Found({ plan, onSaved }: { plan: Plan; onSaved: () => void }): JSX.Element {

@@ -3,11 +3,13 @@
 import type { JSX } from "preact";
 import { useRef, useState } from "preact/hooks";
 import { post } from "../../api/client.ts";
-import type { Bench, Plan, Run } from "../../api/types.ts";
+import type { Bench, FoundRuns, Plan, Run } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
 import { t } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
+import { useMe } from "../../session.ts";
+import { durationOf, listed, torquesOf } from "./plan-facts.ts";
 import { ForecastShown, useForecast } from "./forecast.tsx";
 import { valuesOf, VariableFields } from "./variable-fields.tsx";
 
@@ -17,15 +19,21 @@ export interface StartedFrom {
   values: Record<string, string>;
 }
 
+// That of the last run that this person asked for; '' if there is none.
+function useLastPlan(wanted: boolean): string {
+  const { name } = useMe(), query = new URLSearchParams({ requested_by: name, most: "1" });
+  return useData<FoundRuns>(wanted ? `/run-list?${query}` : null).data?.runs[0]?.run.plan ?? "";
+}
+
 // Either the bench is given, or the plan; the other is chosen.
 export function StartPlan({ bench, plan, from }: { bench?: string; plan?: string; from?: StartedFrom }): JSX.Element {
-  const plans = useData<Plan[]>("/plans").data ?? [];
+  const plans = useData<Plan[]>("/plans").data ?? [], lastPlan = useLastPlan(plan === undefined);
   const benches = useData<Bench[]>(bench ? null : "/benches").data ?? [];
   const [chosenPlan, setPlan] = useState(plan ?? "");
   const [chosenBench, setBench] = useState(bench ?? from?.bench ?? "");
   const [texts, setTexts] = useState<Record<string, string>>(from?.values ?? {});
   const form = useRef<HTMLFormElement>(null);
-  const found = plans.find((one) => one.name === (chosenPlan || plans[0]?.name));
+  const found = plans.find((one) => one.name === (chosenPlan || lastPlan));
   const where = chosenBench || benches[0]?.name || "";
   const wanted = found && where ? { plan: found.name, bench: where, values: valuesOf(found, texts) } : null;
   const forecast = useForecast(wanted, form);
@@ -39,8 +47,9 @@ export function StartPlan({ bench, plan, from }: { bench?: string; plan?: string
     <form ref={form} class="start" onSubmit={(event) => void start(event)}>
       {plan ? null : (
         <label class="field">{t("Plan")}
-          <select value={found?.name ?? ""} onChange={(event) => { setPlan(event.currentTarget.value); setTexts({}); }}>
-            {plans.map((one) => <option key={one.name} value={one.name}>{one.title || one.name}</option>)}
+          <select required value={found?.name ?? ""} onChange={(event) => { setPlan(event.currentTarget.value); setTexts({}); }}>
+            <option value="" disabled>{t("choose a plan …")}</option>
+            {plans.map((one) => <option key={one.name} value={one.name}>{listed(one)}</option>)}
           </select>
         </label>
       )}
@@ -51,9 +60,10 @@ export function StartPlan({ bench, plan, from }: { bench?: string; plan?: string
           </select>
         </label>
       )}
+      {found ? <p>{t("About {time}; largest torque asked for: {torques}.", { time: durationOf(found), torques: torquesOf(found) })}</p> : null}
       {plan || !found ? null : <p class="quiet"><a href={to.plan(found.name)}>{found.name}</a>{found.description ? `: ${found.description}` : ""}</p>}
       {found ? <VariableFields plan={found} texts={texts} onChange={setTexts} /> : null}
-      <div class="forecast" aria-live="polite"><ForecastShown of={forecast} /></div>
+      <div class="forecast" aria-live="polite">{found ? <ForecastShown of={forecast} /> : null}</div>
       <button type="submit" class="main" disabled={!wanted || forecast.refused}>{t("Queue the run")}</button>
     </form>
   );

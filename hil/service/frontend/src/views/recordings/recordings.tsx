@@ -56,7 +56,7 @@ function State({ of: one }: { of: Recording }): JSX.Element {
 
 export function RecordingView({ id }: { id: number }): JSX.Element {
   const one = useData<Recording>(`/recordings/${id}`, AGAIN_MS);
-  return <Loaded of={one} what={t("recording {number}", { number: id })}>{(found) => <Found key={found.state} recording={found} onChanged={one.again} />}</Loaded>;
+  return <Loaded whole of={one} what={t("recording {number}", { number: id })}>{(found) => <Found key={found.state} recording={found} onChanged={one.again} />}</Loaded>;
 }
 
 function Found({ recording: one, onChanged }: { recording: Recording; onChanged: () => void }): JSX.Element {

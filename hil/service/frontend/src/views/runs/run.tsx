@@ -21,7 +21,9 @@ import { Criteria } from "../criteria.tsx";
 import { Notes } from "./notes.tsx";
 import { isPassed, Outcome } from "./outcome.tsx";
 import { look, rangeOfSegment } from "./places.ts";
+import { Unsettled } from "./unsettled.tsx";
 import { WhyItWaits } from "./waiting.tsx";
+import { BestRun } from "./best-run.tsx";
 import { Downloads, Evidence, Happenings } from "./run-parts.tsx";
 
 const OVER = ["ended", "interrupted", "cancelled"];
@@ -32,7 +34,7 @@ export function RunView({ run: id }: { run: number }): JSX.Element {
   const run = useData<Run>(`/runs/${id}`, AGAIN_MS);
   const name = run.data?.bench ?? "", bench = useData<Bench>(name ? `/benches/${encodeURIComponent(name)}` : null, AGAIN_MS);
   useStopOf(name, !name ? null : isMissing(bench) ? false : bench.loading && !bench.data ? null : true);
-  return <Loaded of={run} what={t("run {run}", { run: id })}>{(found) => <Found key={found.state} run={found} bench={bench.data} />}</Loaded>;
+  return <Loaded whole of={run} what={t("run {run}", { run: id })}>{(found) => <Found key={found.state} run={found} bench={bench.data} />}</Loaded>;
 }
 
 function Found({ run, bench }: { run: Run; bench: Bench | null }): JSX.Element {
@@ -49,6 +51,7 @@ function Found({ run, bench }: { run: Run; bench: Bench | null }): JSX.Element {
       {WAITING.includes(run.state) ? <WhyItWaits run={run} /> : null}
       {isOver ? <Outcome run={run} view={view.data} /> : null}
       {isOver && !isPassed(run) && bench ? <ResetOf bench={bench} /> : null}
+      {isOver ? <Unsettled run={run} view={view.data} /> : null}
       <RunFacts run={run} />
       <RunActions run={run} />
       {view.data ? (
@@ -100,6 +103,7 @@ function RunActions({ run }: { run: Run }): JSX.Element | null {
       {recorded && may("engineer") ? <a href={`${to.list("diagnoses")}?runs=${run.id}`}>{t("Diagnose")}</a> : null}
       {recorded && may("engineer") ? <a href={`${to.list("identifications")}?runs=${run.id}`}>{t("Identify a model")}</a> : null}
       {run.state === "ended" ? <a href={`${to.list("compare")}?runs=${run.id}`}>{t("Compare with another run")}</a> : null}
+      {run.state === "ended" ? <BestRun of={run} /> : null}
       <a href={`${to.list("runs")}?plan=${encodeURIComponent(run.plan)}`}>{t("All runs of this plan")}</a>
     </div>
   );

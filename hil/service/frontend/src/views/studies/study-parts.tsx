@@ -73,7 +73,7 @@ export function ChooseRecordings({ legend, chosen, onChange, without = [] }: { l
 
 export function StudyPage({ id, kind, children }: { id: number; kind: Kind; children: (study: Study) => ComponentChildren }): JSX.Element {
   const study = useData<Study>(`/studies/${id}`, AGAIN_MS);
-  return <Loaded of={study} what={`${kindInWords(kind)} ${id}`}>{(found) => <Found study={found}>{children(found)}</Found>}</Loaded>;
+  return <Loaded whole of={study} what={`${kindInWords(kind)} ${id}`}>{(found) => <Found study={found}>{children(found)}</Found>}</Loaded>;
 }
 
 function titleOf({ kind, id: number }: Study): string {

@@ -1,0 +1,58 @@
+"""Runs of a plan and of its changed copy side by side, and the best of them one click away."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import pytest
+from playwright import sync_api as playwright
+
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
+from tests.hil.service.looks import refuse_hard_to_use
+from tests.hil.service.served import SHORT, Served, served
+
+pytestmark = IN_A_BROWSER
+_COPY = SHORT.replace("name: short", "name: copied").replace("to_nm: $torque_nm", "to_nm: 120")
+
+
+@pytest.fixture(scope="module")
+def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """Run 1 of a plan at 100 N m, run 2 of its copy at 120 N m."""
+    folder = tmp_path_factory.mktemp("compare")
+    with served(folder / "data", "--rate", "1000", state=folder / "state") as service:
+        service.give("short", SHORT)
+        service.give("copied", _COPY)
+        yield service
+
+
+def test_the_list_of_runs_to_compare_with_says_why_it_is_empty(page: playwright.Page, there: Served) -> None:
+    to(page, there, "compare")
+    expect(page.get_by_text("No run has ended yet.")).to_be_visible()
+    there.over(there.queue())
+    to(page, there, "compare?runs=1")
+    expect(page.get_by_text("No other run has ended yet")).to_be_visible()
+
+
+def test_a_run_of_a_copy_is_compared_with_the_best_run_in_one_click(
+    page: playwright.Page, there: Served
+) -> None:
+    there.over(there.queue("copied"))
+    to(page, there, "runs/1")
+    expect(
+        page.get_by_text(re.compile("The best of 2 runs that passed these criteria: margin \\d"))
+    ).to_be_visible()
+    to(page, there, "compare?runs=1")
+    group = choice(page, "and").locator("optgroup")
+    expect(group.nth(0)).to_have_attribute("label", "runs of short")
+    expect(group.nth(1)).to_contain_text("2: copied")
+    to(page, there, "runs/2")
+    page.get_by_role("link", name=re.compile("Compare with the best run \\(1, margin")).click()
+    expect(heading(page, "Compare runs")).to_be_visible()
+    expect(page).to_have_url(re.compile("runs=2,1"))
+    differs = page.locator(".differs")
+    expect(differs).to_contain_text("segment s (step): to_nm 100 ($torque_nm)")
+    expect(differs).to_contain_text(re.compile("instead of 120.N m"))
+    expect(region(page, "Criteria").locator("table")).to_contain_text("Peak of the shaft torque")
+    expect(page.locator("figure.plot")).to_have_count(3)
+    refuse_hard_to_use(page)

@@ -1,0 +1,73 @@
+"""The best run by margins that are computed by hand."""
+
+from __future__ import annotations
+
+import pytest
+
+from hil.core.result import CriterionResult, CriterionVerdict
+from hil.service.best_run import best_run
+
+
+def criterion(
+    id: str,
+    value: float | None,
+    upper: float | None = None,
+    lower: float | None = None,
+    verdict: CriterionVerdict = "pass",
+) -> CriterionResult:
+    return CriterionResult(id=id, value=value, unit="N m", upper=upper, lower=lower, verdict=verdict)
+
+
+def of_two(peak: float, trough: float) -> list[CriterionResult]:
+    """At most 500 N m, at least -40 N m."""
+    return [criterion("s.peak", peak, upper=500.0), criterion("s.trough", trough, lower=-40.0)]
+
+
+def test_the_best_has_the_largest_smallest_margin() -> None:
+    # margins: run 1 (500 - 400) / 500 = 0.2 and (-20 + 40) / 40 = 0.5, smallest 0.2;
+    # run 2 (500 - 350) / 500 = 0.3 and (-30 + 40) / 40 = 0.25, smallest 0.25;
+    # run 3 (500 - 100) / 500 = 0.8 and (-36 + 40) / 40 = 0.1, smallest 0.1
+    passed = {1: of_two(400, -20), 2: of_two(350, -30), 3: of_two(100, -36)}
+    best, among = best_run(passed[1], passed)
+    assert best is not None
+    assert (best.run, best.criterion, among) == (2, "s.trough", 3)
+    assert best.margin == pytest.approx(0.25)
+
+
+def test_of_two_limits_the_nearer_counts_and_of_equals_the_newest() -> None:
+    # 90 in 0 to 100 is 0.1 from the upper; the limit of zero has no share
+    both = [criterion("s.x", 90.0, upper=100.0, lower=0.0)]
+    best, _ = best_run(both, {4: both, 7: both, 5: both})
+    assert best is not None
+    assert (best.run, best.margin) == (7, pytest.approx(0.1))
+
+
+def test_runs_with_other_limits_or_criteria_are_not_compared() -> None:
+    mine = of_two(400, -20)
+    others = {
+        2: [criterion("s.peak", 100.0, upper=900.0), mine[1]],
+        3: [mine[0]],
+        4: [*mine, criterion("s.more", 1.0, upper=1000.0)],
+    }
+    assert best_run(mine, others) == (None, 0)
+    assert best_run([criterion("s.peak", 1.0, verdict="informational")], {2: mine}) == (None, 0)
+
+
+def test_checks_of_any_device_and_values_without_a_limit_do_not_count() -> None:
+    more = [
+        criterion("s.arrival", 9.9, upper=10.0, lower=-10.0),
+        criterion("s.clunk", 5.0, verdict="informational"),
+        criterion("s.settling_time", None, verdict="did_not_settle"),
+    ]
+    best, among = best_run(of_two(400, -20), {6: [*of_two(400, -20), *more]})
+    assert best is not None
+    assert (best.margin, among) == (pytest.approx(0.2), 1)
+
+
+def test_a_relative_limit_differs_from_run_to_run_and_counts_with_its_own() -> None:
+    # below another segment's 300 and 200: margins (300 - 270) / 300 = 0.1 and (200 - 120) / 200 = 0.4
+    first = [criterion("a.peak.below.b", 270.0, upper=300.0)]
+    other = [criterion("a.peak.below.b", 120.0, upper=200.0)]
+    best, among = best_run(first, {1: first, 2: other})
+    assert best is not None
+    assert (best.run, best.margin, among) == (2, pytest.approx(0.4), 2)
