@@ -8,6 +8,7 @@ simulation.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -169,6 +170,17 @@ def linearised(problem: Problem, point: Point, *, free: bool = True) -> Linearis
     if coordinates:
         slopes[-len(coordinates) :] = problem.prior_chords(coordinates, zero)
     return Linearised(point, tuple(coordinates), left, slopes, covariance, tuple(round_.bases))
+
+
+def left_to_gain(at: Linearised) -> float:
+    """Growth of log L that the numbers of a point promise to first order (Newton's decrement)."""
+    slope = at.slopes.T @ at.left
+    return growth(0.5 * float(slope @ at.covariance @ slope), 0.5 * float(at.left @ at.left))
+
+
+def growth(drop: float, whole: float) -> float:
+    """Of log L where a drop of the weighed squares lets the discrepancy shrink along with them."""
+    return -whole * math.log(max(1.0 - drop / max(whole, 1e-300), 1e-12))
 
 
 def bounds_of(coordinates: Sequence[Coordinate]) -> tuple[Array, Array]:

@@ -57,6 +57,19 @@ class Coordinate:
             return math.log(max(value, 1e-300) / self.value)
         return (value - self.value) / self.scale
 
+    def away(self, u: float) -> float:
+        """How far the number is from what the base says, in tolerances; 0 where that says nothing."""
+        if not self.base:
+            return 0.0
+        share = math.log(self.at(u) / self.base) if self.logarithmic else self.at(u) / self.base - 1.0
+        return share / self.tolerance
+
+    def away_slope(self) -> float:
+        """Change of `away` with the coordinate."""
+        if not self.base:
+            return 0.0
+        return (1.0 if self.logarithmic else self.scale / self.base) / self.tolerance
+
     def slope(self, u: float) -> float:
         """Change of the number with the coordinate."""
         return self.value * math.exp(u) if self.logarithmic else self.scale
@@ -88,6 +101,15 @@ class Hypothesis:
             self, terms=tuple(self.terms[i] for i in keep), opened=tuple(self.opened[i] for i in keep)
         )
 
+    def closed(self, index: int, optional: str) -> Hypothesis:
+        """The same, an optional number of an effect where it does nothing."""
+        use = self.terms[index]
+        default = next(one.default for one in EFFECTS[use.id].parameters if one.name == optional)
+        terms, opened = list(self.terms), list(self.opened)
+        terms[index] = EffectUse(use.id, {**use.values, optional: default})
+        opened[index] = opened[index] - {optional}
+        return replace(self, terms=tuple(terms), opened=tuple(opened))
+
     @property
     def kind(self) -> str:
         """Kind of the model, its effects included."""
@@ -115,7 +137,10 @@ class Hypothesis:
                 return Coordinate(-1, name, value, scales[name], False, 0.0, math.inf)
             # a rigid axle's shaft torque steps from sample to sample: its slope is seen over a whole one
             step = 1.0 if self.base.kind == "rigid" else 1e-3
-            return Coordinate(-1, name, value, scales[name], False, 0.0, _LONGEST_DELAY_S, step=step)
+            return Coordinate(
+                -1, name, value, scales[name], False, 0.0, _LONGEST_DELAY_S, base or None, step,
+                tolerance_of(self.base, name),
+            )  # fmt: skip
         tolerance = tolerance_of(self.base, name)
         return Coordinate(-1, name, value, 1.0, True, value * 1e-3, value * 1e3, base, tolerance=tolerance)
 

@@ -7,6 +7,7 @@ is the drop that each order promises. One transform gives all orders.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -14,8 +15,8 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._fit import Point
 from hil.analysis.missing_effects._problem import Problem
-from hil.analysis.missing_effects._spectrum import SEGMENT_S, white
-from hil.plant import linear_system_of
+from hil.analysis.missing_effects._spectrum import SEGMENT_S, bands_of, white
+from hil.plant import gear_ratio_of, linear_system_of, turned
 
 Array = npt.NDArray[np.float64]
 Side = Literal["wheel", "rotor"]
@@ -70,6 +71,28 @@ def _orders_by(problem: Problem, point: Point, side: Side) -> list[float]:
     promise = np.abs(slopes) ** 2 / np.maximum(energy, 1e-250)
     promise[promise > whole] = 0.0  # more than there is: an order that the plant does not show
     return peaks(orders, np.where(orders * turns(problem, side) >= PERIODS, promise, 0.0), _COUNT)
+
+
+def turned_with(problem: Problem, point: Point) -> Problem:
+    """The same, angles by the speeds of a point and by that of its misfit which is more than noise.
+
+    An angle that is integrated from readings walks off with their noise, one that is simulated with what the
+    model gets wrong: of each octave of the difference a share (P - N)/P is taken (N. Wiener, 1949).
+    """
+    powers = point.powers(problem)
+    total = np.maximum(np.sum(powers.bins, axis=0), 1e-300)
+    power = np.sum(powers.bins * powers.power, axis=0) / total
+    noise = problem.slow_noise * np.nan_to_num(problem.noise)[:, None] ** 2
+    share = np.maximum(1.0 - noise / np.maximum(power, 1e-300), 0.0)
+    ratio = gear_ratio_of(point.hypothesis.model()) or 1.0
+    angles = []
+    for index, one in enumerate(problem.series):
+        shown = problem.samples(index, point.hypothesis, point.starts[index])
+        apart = np.fft.rfft(one.samples - shown, axis=0)
+        band = bands_of(powers.edges_hz, np.fft.rfftfreq(len(shown), one.dt).astype(np.float64))
+        speeds = shown + np.fft.irfft(share.T[band] * apart, len(shown), axis=0)
+        angles.append(turned(speeds, one.dt, ratio, one.first_wheel_angle_rad))
+    return replace(problem, angles=tuple(angles))
 
 
 def count_of_orders(problem: Problem, side: Side) -> float:

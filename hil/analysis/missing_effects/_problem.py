@@ -87,6 +87,14 @@ class Problem:
         )
         return np.asarray(shown)
 
+    def samples(self, index: int, hypothesis: Hypothesis, start: Array) -> Array:
+        """Channels of a recording by a hypothesis at every sample, n x 3."""
+        one = self.series[index]
+        slots, sensors = (part[None] for part in hypothesis.packed())
+        angles = self.angles[index]
+        shown = simulate_many(slots, one.torque, one.dt, start[None], sensors, 1, angles, one.load)
+        return np.asarray(shown[0])
+
     def errors(self, hypothesis: Hypothesis, starts: Sequence[Array]) -> list[Array]:
         """Measured less simulated of each recording, blocks x 3; NaN where a channel was not recorded."""
         packed = [hypothesis.packed()]
@@ -144,27 +152,17 @@ class Problem:
         """Derivatives of `prior`, on the diagonal."""
         away = np.abs(self._away(coordinates, u)) + 1e-9
         slopes = 2.0 * away / (1.0 + away**2) / np.sqrt(2.0 * np.log1p(away**2))
-        return np.diag(
-            [s / one.tolerance if one.base else 0.0 for s, one in zip(slopes, coordinates, strict=True)]
-        )
+        return np.diag([s * one.away_slope() for s, one in zip(slopes, coordinates, strict=True)])
 
     def prior_chords(self, coordinates: Sequence[Coordinate], u: Array) -> Array:
         """Slopes of `prior` back to where a base's numbers would be right, on the diagonal."""
         away = np.abs(self._away(coordinates, u)) + 1e-9
         slopes = np.sqrt(2.0 * np.log1p(away**2)) / away
-        return np.diag(
-            [s / one.tolerance if one.base else 0.0 for s, one in zip(slopes, coordinates, strict=True)]
-        )
+        return np.diag([s * one.away_slope() for s, one in zip(slopes, coordinates, strict=True)])
 
     @staticmethod
     def _away(coordinates: Sequence[Coordinate], u: Array) -> Array:
-        return np.array(
-            [
-                np.log(one.at(at) / one.base) / one.tolerance if one.base else 0.0
-                for one, at in zip(coordinates, u.tolist(), strict=True)
-            ],
-            dtype=float,
-        )
+        return np.array([one.away(at) for one, at in zip(coordinates, u.tolist(), strict=True)], dtype=float)
 
 
 def _step(one: Coordinate, at: float) -> float:

@@ -17,7 +17,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.missing_effects._fit import Linearised, Point, without
+from hil.analysis.missing_effects._fit import Linearised, Point, growth, without
 from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of
 from hil.analysis.missing_effects._orders import orders_of
 from hil.analysis.missing_effects._problem import Problem
@@ -94,7 +94,7 @@ def promises(problem: Problem, at: Linearised) -> list[Promise]:
             which, first = slice(first, first + len(uses)), first + len(uses)
             factors, drop, u = project.explained(alone, which, probe.directions)
             use = EffectUse(uses[0].id, dict(probe.start(factors)))
-            gain = _gain(drop, 0.5 * float(at.left @ at.left))
+            gain = growth(drop, 0.5 * float(at.left @ at.left))
             found.append(Promise(use, at.point, gain, hypothesis.moved(at.coordinates, u)))
     return found
 
@@ -121,11 +121,6 @@ def _together(
             some = []
     if some:
         yield some
-
-
-def _gain(drop: float, whole: float) -> float:
-    """Growth of log L where a drop of the weighed squares lets the discrepancy shrink along with them."""
-    return -whole * math.log(max(1.0 - drop / max(whole, 1e-300), 1e-12))
 
 
 def may_join(effect: Effect, hypothesis: Hypothesis) -> bool:
@@ -237,7 +232,7 @@ def promised_by(problem: Problem, at: Linearised, hypotheses: Sequence[Hypothesi
     factors = np.clip(right / np.maximum(squares, 1e-300), *STRETCH)
     drops = np.where(np.isfinite(squares), factors * right - 0.5 * factors**2 * squares, -np.inf)
     whole = 0.5 * float(at.left @ at.left)
-    return [_gain(float(drop), whole) for drop in drops]
+    return [growth(float(drop), whole) for drop in drops]
 
 
 def best_by_name(found: Sequence[Promise], each: int) -> list[list[Promise]]:

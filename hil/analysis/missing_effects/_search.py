@@ -13,6 +13,7 @@ from hil.analysis.missing_effects._fit import (
     ROUNDS,
     Point,
     fit,
+    left_to_gain,
     linearised,
     point_at,
     with_better_starts,
@@ -20,7 +21,7 @@ from hil.analysis.missing_effects._fit import (
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._linear import structures
 from hil.analysis.missing_effects._odds import Candidate, remains
-from hil.analysis.missing_effects._orders import count_of_orders
+from hil.analysis.missing_effects._orders import count_of_orders, turned_with
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import (
     best_by_name,
@@ -77,10 +78,30 @@ class Search:
         """Weigh errors by what the best hypothesis so far leaves."""
         powers = best.point.powers(self.problem)
         self.values = powers.values(self.problem.noise)
-        self.problem = self.problem.weighed_by(powers.spectrum(self.problem.noise))
+        turned = turned_with(self.problem, best.point)
+        self.problem = turned.weighed_by(powers.spectrum(self.problem.noise))
 
-    def fitted(self, hypothesis: Hypothesis, near: Candidate | None, rounds: int = ROUNDS) -> Candidate:
-        """Fit a hypothesis, weighed by the spectrum that it leaves itself; the best of its names is kept."""
+    def promised(self, candidate: Candidate) -> float:
+        """Growth of log L that its numbers may still bring a candidate, weighed by what it leaves.
+
+        Twice the first order: a misfit that shrinks weighs what stays the more.
+        """
+        problem = self.problem
+        own = problem.weighed_by(candidate.point.powers(problem).spectrum(problem.noise))
+        return 2.0 * left_to_gain(linearised(own, candidate.point))
+
+    def fitted(
+        self,
+        hypothesis: Hypothesis,
+        near: Candidate | None,
+        rounds: int = ROUNDS,
+        held: frozenset[str] = frozenset(),
+    ) -> Candidate:
+        """Fit a hypothesis, weighed by the spectrum that it leaves itself; the best of its names is kept.
+
+        Args:
+            held: numbers of the base that stay what they are.
+        """
         goes_on = near is not None and near.point.hypothesis is hypothesis
         point = near.point if near and goes_on else self._begun(hypothesis, near)
         best = before = self.judged(point)
@@ -91,7 +112,7 @@ class Search:
             problem = problem.weighed_by(white(problem.noise, problem.rate_hz))
         for number in range(rounds if rounds < ROUNDS else _MOST_ROUNDS):
             # slow misfit would trade a dead time for anything, until errors are weighed by their colour
-            point = fit(problem, point, frozenset() if number or goes_on else frozenset({"torque_delay"}))
+            point = fit(problem, point, held if number or goes_on else held | {"torque_delay"})
             after = self.judged(point)
             best = max(best, after, key=self.score)
             growth = after.log_likelihood - before.log_likelihood
@@ -150,6 +171,8 @@ def search(problem: Problem, show: Callable[[str], None]) -> Search:
             break  # of two that go together the first may take off less than half, the second does not
         best = _pruned(done, grown)
         done.go_on_from(best)
+        if any(EFFECTS[use.id].law.follows for use in best.point.hypothesis.terms):
+            best = done.fitted(best.point.hypothesis, best)  # angles are better known
     return done
 
 
@@ -211,17 +234,15 @@ def _best_of(
     Each gets a round, the better half more, until two are fitted to their end (K. Jamieson, A. Talwalkar,
     AISTATS 2016, 240).
     """
-    begun: list[tuple[Candidate, float]] = []
+    begun: list[Candidate] = []
     reached = 0.0
     most = max((gain for _, gain in suggested if gain < math.inf), default=0.0)
     for hypothesis, gain in suggested[:_TRIED]:
         if gain < HALF * min(most, reached):
             break  # others have more before them and more behind them
         show(" + ".join(hypothesis.names))
-        had = done.at(hypothesis, best).log_likelihood
-        one = done.fitted(hypothesis, best, 1)
-        begun.append((one, one.log_likelihood - had))
-        reached = max(reached, one.log_likelihood - best.log_likelihood)
+        begun.append(done.fitted(hypothesis, best, 1))
+        reached = max(reached, begun[-1].log_likelihood - best.log_likelihood)
     rounds = 1
     tried = _best_of_each_name(done, _caught_up(done, begun))
     while len(tried) > _RIVALS:
@@ -232,23 +253,18 @@ def _best_of(
     return max(ended, key=done.score, default=None)
 
 
-def _caught_up(done: Search, tried: Sequence[tuple[Candidate, float]]) -> list[Candidate]:
-    """After two rounds more as long as the last one brought more than a candidate is behind the best.
-
-    Args:
-        tried: candidates, and by how much log L grew in their last round.
-    """
+def _caught_up(done: Search, tried: Sequence[Candidate]) -> list[Candidate]:
+    """After rounds more as long as their numbers promise more than a candidate is behind the best."""
     for _ in range(_RIVALS):
-        ahead = max((done.score(one) for one, _ in tried), default=0.0)
-        again = []
-        for one, grew in tried:
-            if 0.0 < ahead - done.score(one) < grew:
-                after = done.fitted(one.point.hypothesis, one, 1)
-                again.append((after, after.log_likelihood - one.log_likelihood))
-            else:
-                again.append((one, grew))
-        tried = again
-    return [one for one, _ in tried]
+        ahead = max((done.score(one) for one in tried), default=0.0)
+        behind = [one for one in tried if done.score(one) < ahead < done.score(one) + done.promised(one)]
+        if not behind:
+            break
+        tried = [
+            done.fitted(one.point.hypothesis, one, 1) if any(one is other for other in behind) else one
+            for one in tried
+        ]
+    return [*tried]
 
 
 def _best_of_each_name(done: Search, tried: Sequence[Candidate]) -> list[Candidate]:
@@ -285,17 +301,20 @@ def _suggested(done: Search, best: Candidate) -> list[tuple[Hypothesis, float]]:
 
 
 def _beside_the_base(done: Search, best: Candidate, least: float) -> list[tuple[Hypothesis, float]]:
-    """Names beside the base's numbers as they came, where these alone had to leave their tolerances.
+    """Names beside the base's numbers as they came, where these alone moved for more than a name costs.
 
-    A gain of a sensor may look like three numbers that are wrong: from there a fit would not come back.
+    A gain or a lag of a sensor may look like three numbers that are wrong: from there a fit would not come
+    back.
     """
-    if best.names or -best.prior < least:
+    if best.names:
         return []
     base = Hypothesis(done.problem.model, dict(done.problem.model.parameters))
     near = done.at(base, best)
     near = done.judged(with_better_starts(done.problem, near.point))
-    problem = done.problem.weighed_by(near.point.powers(done.problem).spectrum(done.problem.noise))
     behind = done.score(best) - done.score(near)
+    if behind < least:
+        return []
+    problem = done.problem.weighed_by(near.point.powers(done.problem).spectrum(done.problem.noise))
     promised = [
         one for one in promises(problem, linearised(problem, near.point)) if one.gain - behind > least
     ]
@@ -346,7 +365,8 @@ def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candi
             rest = EffectUse(use.id, {**use.values, parameter.name: 0.0})
             begins = hypothesis.without(index).with_term(rest, opened | {parameter.name})
         tried = done.fitted(begins, best, _RIVALS)
-        best = max(best, tried, key=done.score)
+        if done.score(tried) > done.score(best):  # the next one is judged by what this one leaves
+            best = done.fitted(tried.point.hypothesis, tried)
     return best
 
 

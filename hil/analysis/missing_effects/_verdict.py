@@ -58,6 +58,7 @@ class Judged:
 def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     """The outcome of a search."""
     done = of.done
+    as_the_base = _as_the_base(done, done.best)
     best, shares = _worth_telling(of, done.best)
     _swapped(done, best)
     candidates = list(done.found.values())
@@ -74,7 +75,7 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     numbers = _numbers(at, of.asked)
     far = _is_far(numbers, done)
     if not far and done.problem.is_noise(best.point.errors):  # what has no name bends numbers as well
-        effects += _mismatches(done, numbers, best)
+        effects += _mismatches(done, numbers, best, as_the_base)
     if done.problem.is_noise(best.point.errors):
         effects += _roundings(done, float(weights[candidates.index(best)]))
     something_else = _remains(of, done.found[()], best) if best.names else 0.0
@@ -90,6 +91,30 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
         curves_of(best.point.hypothesis, done.problem.series), notes, seconds,
         done.problem.noise * np.sqrt(done.problem.series[0].block), at.drawn(_DRAWN), of.fitted, of.held_out,
     )  # fmt: skip
+
+
+def _as_the_base(done: Search, best: Candidate) -> frozenset[str]:
+    """Numbers that are effects by themselves and moved, though the data allow what the base says as well.
+
+    A dead time beside friction that sticks has many minima, and a rigid axle shows it to a sample. So each
+    is held where the base has it, once with all optional numbers and once with each of them left out.
+    """
+    hypothesis = best.point.hypothesis
+    found = []
+    for name in NUMBERS.values() if best.names else ():
+        base = done.problem.model.parameters.get(name, 0.0)
+        if base <= 0.0 or _off(name, {name: (base, hypothesis.numbers[name], 0.0)}, done)[0] <= 1.0:
+            continue
+        begins = replace(hypothesis, numbers={**hypothesis.numbers, name: base})
+        fewer = [
+            begins.closed(index, optional)
+            for index, opened in enumerate(hypothesis.opened)
+            for optional in sorted(opened)
+        ]
+        ended = [done.fitted(one, best, held=frozenset({name})) for one in (begins, *fewer)]
+        if max(done.score(one) for one in ended) > done.score(best) - ALIKE:
+            found.append(name)
+    return frozenset(found)
 
 
 def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, list[float]]:
@@ -126,9 +151,14 @@ def _swapped(done: Search, best: Candidate) -> None:
     """Far from noise, fit the best hypothesis with each name in turn replaced by others.
 
     A forward search finds a name beside those before it; names that could stand in its place must be given
-    the chance, or the data would seem to tell them apart.
+    the chance, or the data would seem to tell them apart. Near noise those go on that were left behind while
+    their numbers promised as much as the best one has.
     """
     if done.problem.is_noise(best.point.errors):
+        least = done.score(best) - ALIKE
+        for one in [one for one in done.found.values() if len(one.names) == len(best.names)]:
+            if done.score(one) < least < done.score(one) + done.promised(one):
+                done.fitted(one.point.hypothesis, one)
         return
     pool = sorted(done.found.values(), key=done.score, reverse=True)
     uses = {label: one for one in pool for label in one.names}
@@ -170,11 +200,23 @@ def _named(
 
 
 def _remains(of: Judged, before: Candidate, after: Candidate) -> float:
-    """Share of the variance beyond noise that stays; none where numbers of the base had explained it."""
+    """Share of the variance beyond noise that stays; none where numbers of the base had explained it.
+
+    Nor where all that stays may be slow noise, if of one channel half as much as that was taken off, and by
+    more than fits to noise so slow bring.
+    """
     problem, done = of.done.problem, of.done
     if after.prior - before.prior > done.cost_of_a_number(after) and done.score(after) > done.score(before):
         return 0.0
-    return remains(of.left(before), of.left(after), problem.noise**2, problem.slow_noise)
+    had, has = of.left(before), of.left(after)
+    there, noise = np.isfinite(has), problem.noise**2
+    if np.all(has[there] <= problem.slow_noise * noise[there]):
+        grew = after.log_likelihood - before.log_likelihood
+        cost = grew - (done.score(after) - done.score(before))
+        off, slow = (had - has)[there], np.maximum(has - noise, 0.0)[there]
+        if grew / problem.slow_noise > cost and np.any(off > HALF * slow):
+            return 0.0
+    return remains(had, has, problem.noise**2, problem.slow_noise)
 
 
 def _roundings(done: Search, weight: float) -> list[Named]:
@@ -288,7 +330,10 @@ def _is_far(numbers: Mapping[str, tuple[float, float, float]], done: Search) -> 
 
 
 def _mismatches(
-    done: Search, numbers: Mapping[str, tuple[float, float, float]], best: Candidate
+    done: Search,
+    numbers: Mapping[str, tuple[float, float, float]],
+    best: Candidate,
+    as_the_base: frozenset[str],
 ) -> list[Named]:
     """Numbers that are wrong by more than their tolerance and doubt, each with the probability of that.
 
@@ -299,7 +344,7 @@ def _mismatches(
 
     found = []
     for name, (_, value, error) in numbers.items():
-        if best.names and not _stands_beside(name, best, done.problem.model):
+        if best.names and (name in as_the_base or not _stands_beside(name, best, done.problem.model)):
             continue
         moved, doubt = _off(name, numbers, done)
         sure = float(ndtr((moved - 1.0) / max(doubt, 1e-12)))

@@ -8,7 +8,7 @@ from hil.core.effects._effect import Effect, Least, Parameter, Stage
 from hil.core.effects._law import Law
 from hil.core.effects._probe import Probe, Scene, reading
 
-_LATE_S = (0.008, 0.04)
+_LATE_S = (0.008, 0.016, 0.024, 0.032, 0.04, 0.05)
 
 
 def _probes(scene: Scene) -> Iterator[Probe]:
