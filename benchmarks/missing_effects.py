@@ -45,6 +45,8 @@ _TWO_SIDED_95 = 1.96
 _MEAN_S = 4e-3  # over which gaps are means
 #: Counted in the blind set alone: other bases have wrong numbers on purpose, a drive's readings are rounded.
 _ASIDE = ("parameter_mismatch", "sensor_quantization")
+#: Groups of the blind set in which no name of the registry is right.
+_NO_NAME = ("none", "too_small", "outside", "drift")
 #: A number of the base that is an effect by another name: either is right.
 _SAME = {
     "parameter_mismatch(torque_delay)": "dead_time",
@@ -245,10 +247,14 @@ def _exactly(truth: Sequence[str], beside: Sequence[str] = ()) -> Callable[[dict
         named = [
             {_label(e), *e.get("class", [])} for e in answer["effects"] if e["id"] != "parameter_mismatch"
         ]
-        named = [one for one in named if not one & {*beside}]
-        return len(named) == len(truth) and all(any(name in one for one in named) for name in truth)
+        return _holds([one for one in named if not one & {*beside}], truth)
 
     return right
+
+
+def _holds(named: Sequence[set[str]], truth: Sequence[str]) -> bool:
+    """Whether classes of names are as many as what is hidden, and each of it is in one."""
+    return len(named) == len(truth) and all(any(name in one for one in named) for name in truth)
 
 
 def _own() -> Iterator[Case]:
@@ -334,11 +340,8 @@ def _blind(options: argparse.Namespace) -> Iterator[Case]:
         ) -> bool:
             """As the set asks; a class that holds what is hidden counts where a name is asked for."""
             named = [{_label(e), *e.get("class", [])} for e in found["effects"]]
-            in_class = len(named) == len(truth) and all(any(t in one for one in named) for t in truth)
-            asks = not (
-                spec.group in ("none", "too_small", "outside", "drift") or spec.subject.startswith("none")
-            )
-            return judged(found).right or (asks and in_class)
+            asks = spec.group not in _NO_NAME and not spec.subject.startswith("none")
+            return judged(found).right or (asks and _holds(named, truth))
 
         def off(found: dict[str, Any], judged: Callable[[dict[str, Any]], Score] = judged) -> Sequence[float]:
             return [*judged(found).standard_errors_off.values()]

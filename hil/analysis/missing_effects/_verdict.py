@@ -103,7 +103,7 @@ def _as_the_base(done: Search, best: Candidate) -> frozenset[str]:
     found = []
     for name in NUMBERS.values() if best.names else ():
         base = done.problem.model.parameters.get(name, 0.0)
-        if base <= 0.0 or _off(name, {name: (base, hypothesis.numbers[name], 0.0)}, done)[0] <= 1.0:
+        if base <= 0.0 or abs(hypothesis.numbers[name] - base) <= _tolerance(name, base, done):
             continue
         begins = replace(hypothesis, numbers={**hypothesis.numbers, name: base})
         fewer = [
@@ -156,8 +156,9 @@ def _swapped(done: Search, best: Candidate) -> None:
     """
     if done.problem.is_noise(best.point.errors):
         least = done.score(best) - ALIKE
-        for one in [one for one in done.found.values() if len(one.names) == len(best.names)]:
-            if done.score(one) < least < done.score(one) + done.promised(one):
+        for one in list(done.found.values()):
+            behind = len(one.names) == len(best.names) and done.score(one) < least
+            if behind and least < done.score(one) + done.promised(one):
                 done.fitted(one.point.hypothesis, one)
         return
     pool = sorted(done.found.values(), key=done.score, reverse=True)
@@ -314,9 +315,14 @@ def _numbers(at: Linearised, asked: Model) -> dict[str, tuple[float, float, floa
 def _off(name: str, numbers: Mapping[str, tuple[float, float, float]], done: Search) -> tuple[float, float]:
     """How far a number moved and how sure that is, both in tolerances."""
     base, found, error = numbers[name]
-    size = abs(base) or done.problem.scales[name]  # only numbers that have a scale may be zero
-    tolerance = done.problem.model.tolerance.get(name, TOLERANCE) * size
+    tolerance = _tolerance(name, base, done)
     return abs(found - base) / tolerance, error / tolerance
+
+
+def _tolerance(name: str, base: float, done: Search) -> float:
+    """Of a number of the base, in its unit."""
+    size = abs(base) or done.problem.scales[name]  # only numbers that have a scale may be zero
+    return float(done.problem.model.tolerance.get(name, TOLERANCE) * size)
 
 
 def _is_far(numbers: Mapping[str, tuple[float, float, float]], done: Search) -> bool:

@@ -147,15 +147,19 @@ class Opening(Valve):
         return self.asked < self.open_from or (self._closes and self.told > 0)
 
 
+def made_safe_while_turning(bench: Any) -> None:
+    bench.dyno.enable(20.0)
+    bench.dyno.hold_speed(10.0)
+    bench.loop.run_for(1.0)
+    bench.dyno.make_safe()
+    bench.rmcu.make_safe()
+    assert bench.loop.wait_for(bench.dyno.is_safe, 0.5)
+
+
 @pytest.mark.parametrize("closes", [True, False])
 def test_a_device_that_leaves_its_safe_state_is_commanded_again_and_told_of(closes: bool) -> None:
     with running(f"down-leaves-{closes}") as bench:
-        bench.dyno.enable(20.0)
-        bench.dyno.hold_speed(10.0)
-        bench.loop.run_for(1.0)
-        bench.dyno.make_safe()
-        bench.rmcu.make_safe()
-        assert bench.loop.wait_for(bench.dyno.is_safe, 0.5)
+        made_safe_while_turning(bench)
         valve = bench.further["valve"] = Opening(closes=closes)
         told: list[str] = []
         complaints = followed(bench, 1.0, lambda kind, text: told.append(text))
@@ -186,12 +190,7 @@ def followed(bench: Any, longest_s: float, event: Callable[[str, str], None]) ->
 
 def test_speeds_of_which_nothing_comes_are_not_waited_for() -> None:
     with running("down-silent") as bench:
-        bench.dyno.enable(20.0)
-        bench.dyno.hold_speed(10.0)
-        bench.loop.run_for(1.0)
-        bench.dyno.make_safe()
-        bench.rmcu.make_safe()
-        assert bench.loop.wait_for(bench.dyno.is_safe, 0.5)
+        made_safe_while_turning(bench)
         clock, told = bench.loop.clock, []
         speeds = AxleSpeeds([SPEEDS], clock.now_s)
         speeds.take(Samples(SPEEDS, np.zeros(1), np.array([[30.0, 0.0]])))
