@@ -115,13 +115,17 @@ def fit(
 ) -> Point:
     """One round: all numbers by least squares while the starts' directions stay, then the starts.
 
+    A number that moves by its logarithm goes by a factor e at most: from next to nothing, where early weights
+    may send it, no slope would lead it back.
+
     Args:
         held: numbers of the base that stay what they are.
     """
     hypothesis = point.hypothesis
     coordinates = [one for one in problem.coordinates(hypothesis) if one.term >= 0 or one.name not in held]
     round_ = _Round(problem, hypothesis, point.starts, coordinates)
-    hypothesis = hypothesis.moved(coordinates, least_squares(round_, *bounds_of(coordinates), evaluations))
+    found = least_squares(round_, *bounds_of(coordinates, 1.0), evaluations)
+    hypothesis = hypothesis.moved(coordinates, found)
     return point_at(problem, hypothesis, _better_starts(problem, hypothesis, point.starts, round_.directions))
 
 
@@ -183,11 +187,12 @@ def growth(drop: float, whole: float) -> float:
     return -whole * math.log(max(1.0 - drop / max(whole, 1e-300), 1e-12))
 
 
-def bounds_of(coordinates: Sequence[Coordinate]) -> tuple[Array, Array]:
-    """Lowest and highest value of each coordinate."""
+def bounds_of(coordinates: Sequence[Coordinate], most: float = np.inf) -> tuple[Array, Array]:
+    """Lowest and highest value of each coordinate; logarithms go by `most` at most."""
     lower = np.array([one.of(one.lower) if one.lower > -np.inf else -np.inf for one in coordinates])
     upper = np.array([one.of(one.upper) if one.upper < np.inf else np.inf for one in coordinates])
-    return np.minimum(lower, -1e-9), np.maximum(upper, 1e-9)
+    reach = np.array([most if one.logarithmic else np.inf for one in coordinates])
+    return np.clip(lower, -reach, -1e-9), np.clip(upper, 1e-9, reach)
 
 
 class _Round:

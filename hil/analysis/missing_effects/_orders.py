@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._fit import Point
 from hil.analysis.missing_effects._problem import Problem
-from hil.analysis.missing_effects._spectrum import SEGMENT_S, bands_of, white
+from hil.analysis.missing_effects._spectrum import SEGMENT_S, bands_of, powers_of, white
 from hil.plant import gear_ratio_of, linear_system_of, turned
 
 Array = npt.NDArray[np.float64]
@@ -77,18 +77,17 @@ def turned_with(problem: Problem, point: Point) -> Problem:
     """The same, angles by the speeds of a point and by that of its misfit which is more than noise.
 
     An angle that is integrated from readings walks off with their noise, one that is simulated with what the
-    model gets wrong: of each octave of the difference a share (P - N)/P is taken (N. Wiener, 1949).
+    model gets wrong: of each octave of a recording's difference a share (P - N)/P is taken (N. Wiener, 1949).
     """
-    powers = point.powers(problem)
-    total = np.maximum(np.sum(powers.bins, axis=0), 1e-300)
-    power = np.sum(powers.bins * powers.power, axis=0) / total
     noise = problem.slow_noise * np.nan_to_num(problem.noise)[:, None] ** 2
-    share = np.maximum(1.0 - noise / np.maximum(power, 1e-300), 0.0)
     ratio = gear_ratio_of(point.hypothesis.model()) or 1.0
     angles = []
     for index, one in enumerate(problem.series):
         shown = problem.samples(index, point.hypothesis, point.starts[index])
         apart = np.fft.rfft(one.samples - shown, axis=0)
+        powers = powers_of([point.errors[index]], one.rate_hz, problem.signal)
+        power = np.mean(powers.power, axis=0)
+        share = np.maximum(1.0 - noise / np.maximum(power, 1e-300), 0.0)
         band = bands_of(powers.edges_hz, np.fft.rfftfreq(len(shown), one.dt).astype(np.float64))
         speeds = shown + np.fft.irfft(share.T[band] * apart, len(shown), axis=0)
         angles.append(turned(speeds, one.dt, ratio, one.first_wheel_angle_rad))

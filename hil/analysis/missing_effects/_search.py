@@ -81,14 +81,17 @@ class Search:
         turned = turned_with(self.problem, best.point)
         self.problem = turned.weighed_by(powers.spectrum(self.problem.noise))
 
+    def weighed_as(self, candidate: Candidate) -> Problem:
+        """The problem, errors weighed by the spectrum that a candidate leaves itself."""
+        powers = candidate.point.powers(self.problem)
+        return self.problem.weighed_by(powers.spectrum(self.problem.noise))
+
     def promised(self, candidate: Candidate) -> float:
         """Growth of log L that its numbers may still bring a candidate, weighed by what it leaves.
 
         Twice the first order: a misfit that shrinks weighs what stays the more.
         """
-        problem = self.problem
-        own = problem.weighed_by(candidate.point.powers(problem).spectrum(problem.noise))
-        return 2.0 * left_to_gain(linearised(own, candidate.point))
+        return 2.0 * left_to_gain(linearised(self.weighed_as(candidate), candidate.point))
 
     def fitted(
         self,
@@ -172,8 +175,20 @@ def search(problem: Problem, show: Callable[[str], None]) -> Search:
         best = _pruned(done, grown)
         done.go_on_from(best)
         if any(EFFECTS[use.id].law.follows for use in best.point.hypothesis.terms):
-            best = done.fitted(best.point.hypothesis, best)  # angles are better known
+            best = _with_better_angles(done, best)
     return done
+
+
+def _with_better_angles(done: Search, best: Candidate) -> Candidate:
+    """Fit a ripple to angles as they are better known after it, while its likelihood grows."""
+    for _ in range(_MOST_ROUNDS):
+        better = done.fitted(best.point.hypothesis, best)
+        growth = better.log_likelihood - best.log_likelihood
+        best = better
+        if growth < _GROWING:
+            break
+        done.go_on_from(best)
+    return best
 
 
 def _starts(problem: Problem) -> list[Hypothesis]:
@@ -314,7 +329,7 @@ def _beside_the_base(done: Search, best: Candidate, least: float) -> list[tuple[
     behind = done.score(best) - done.score(near)
     if behind < least:
         return []
-    problem = done.problem.weighed_by(near.point.powers(done.problem).spectrum(done.problem.noise))
+    problem = done.weighed_as(near)
     promised = [
         one for one in promises(problem, linearised(problem, near.point)) if one.gain - behind > least
     ]
@@ -353,7 +368,7 @@ def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candi
         ]
         if not wider:
             continue
-        problem = done.problem.weighed_by(best.point.powers(done.problem).spectrum(done.problem.noise))
+        problem = done.weighed_as(best)
         gains = promised_by(problem, linearised(problem, best.point), wider)
         if max(gains) <= done.cost_of_a_number(best):
             continue

@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.missing_effects._constancy import constancy
 from hil.analysis.missing_effects._curve import curves_of
 from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised, point_at
 from hil.analysis.missing_effects._hypothesis import TOLERANCE, Hypothesis
@@ -63,9 +64,7 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     _swapped(done, best)
     candidates = list(done.found.values())
     weights = weights_of(candidates, done.values)
-    at = linearised(
-        done.problem.weighed_by(best.point.powers(done.problem).spectrum(done.problem.noise)), best.point
-    )
+    at = linearised(done.weighed_as(best), best.point)
     rivals = _alike(done, best, candidates)
     effects: list[Named] = []
     doubtful: list[Named] = []
@@ -97,7 +96,8 @@ def _as_the_base(done: Search, best: Candidate) -> frozenset[str]:
     """Numbers that are effects by themselves and moved, though the data allow what the base says as well.
 
     A dead time beside friction that sticks has many minima, and a rigid axle shows it to a sample. So each
-    is held where the base has it, once with all optional numbers and once with each of them left out.
+    is held where the base has it, once with all optional numbers and once with each of them left out; in
+    hypotheses that the data do not tell from the best one as well.
     """
     hypothesis = best.point.hypothesis
     found = []
@@ -105,24 +105,31 @@ def _as_the_base(done: Search, best: Candidate) -> frozenset[str]:
         base = done.problem.model.parameters.get(name, 0.0)
         if base <= 0.0 or abs(hypothesis.numbers[name] - base) <= _tolerance(name, base, done):
             continue
-        begins = replace(hypothesis, numbers={**hypothesis.numbers, name: base})
+        alike = [one for one in done.found.values() if done.score(one) > done.score(best) - ALIKE]
+        begins = [_with_number(one.point.hypothesis, name, base) for one in (best, *alike)]
         fewer = [
-            begins.closed(index, optional)
+            begins[0].closed(index, optional)
             for index, opened in enumerate(hypothesis.opened)
             for optional in sorted(opened)
         ]
-        ended = [done.fitted(one, best, held=frozenset({name})) for one in (begins, *fewer)]
+        ended = [done.fitted(one, best, held=frozenset({name})) for one in (*begins, *fewer)]
         if max(done.score(one) for one in ended) > done.score(best) - ALIKE:
             found.append(name)
     return frozenset(found)
 
 
+def _with_number(hypothesis: Hypothesis, name: str, value: float) -> Hypothesis:
+    return replace(hypothesis, numbers={**hypothesis.numbers, name: value})
+
+
 def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, list[float]]:
     """Without effects that take off less than half of what stays without them; shares of the others."""
     while best.names:
+        at = linearised(of.done.weighed_as(best), best.point)
         shares = [
-            1.0 - _remains(of, _without(of.done, best, index), best)
-            if _is_line(of.done, best, index)
+            (1.0 - _remains(of, _without(of.done, best, index), best))
+            * constancy(of.done.problem, at, index, of.done.cost_of_a_number(best))
+            if _is_line(of.done, at, index)
             else 0.0
             for index in range(len(best.names))
         ]
@@ -133,17 +140,17 @@ def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, list[float]]
     return best, []
 
 
-def _is_line(done: Search, best: Candidate, index: int) -> bool:
+def _is_line(done: Search, at: Linearised, index: int) -> bool:
     """Whether an effect follows no angle, or recordings hold periods of its order and tell it to half a one.
 
     A ripple of less than that takes up whatever is slow.
     """
-    use = best.point.hypothesis.terms[index]
+    use = at.point.hypothesis.terms[index]
     side = EFFECTS[use.id].law.follows
     if side is None:
         return True
     whole = turns(done.problem, side)
-    sure = linearised(done.problem, best.point).standard_error(index, "order") * whole < HALF
+    sure = at.standard_error(index, "order") * whole < HALF
     return sure and float(use.values["order"]) * whole >= PERIODS
 
 
@@ -237,7 +244,7 @@ def _roundings(done: Search, weight: float) -> list[Named]:
 
 def _alike(done: Search, best: Candidate, candidates: Sequence[Candidate]) -> dict[str, tuple[str, ...]]:
     """Of each name of the best hypothesis: the names that could take its place without the data telling."""
-    problem = done.problem.weighed_by(best.point.powers(done.problem).spectrum(done.problem.noise))
+    problem = done.weighed_as(best)
     found: dict[str, tuple[str, ...]] = {}
     for one in candidates:
         lost, new = {*best.names} - {*one.names}, {*one.names} - {*best.names}
@@ -377,10 +384,8 @@ def _stands_beside(name: str, best: Candidate, base: Model) -> bool:
 
 def _shows(problem: Problem, point: Point, name: str) -> bool:
     """Whether a number of the base put back moves a channel by more than what no model is right to."""
-    base = {name: problem.model.parameters[name]}
-    back = point_at(
-        problem, replace(point.hypothesis, numbers={**point.hypothesis.numbers, **base}), point.starts
-    )
+    base = problem.model.parameters[name]
+    back = point_at(problem, _with_number(point.hypothesis, name, base), point.starts)
     pairs = zip(back.errors, point.errors, strict=True)
     moved = problem.mean_square([one - other for one, other in pairs])
     return bool(np.nanmax(moved / np.maximum(problem.signal, 1e-300)) > RIGHT_TO**2)
