@@ -1,6 +1,6 @@
 """The plant: a model file turned into motion by a compiled kernel."""
 
-from hil.plant._batch_simulation import ideal_sensors, simulate_many
+from hil.plant._batch_simulation import begins_of, ideal_sensors, simulate_many, turns
 from hil.plant._linear import LinearSystem, linear_system, linear_system_of, system
 from hil.plant._motor_limits import refuse_motor_limits
 from hil.plant._recorded import turned
@@ -21,6 +21,7 @@ __all__ = [
     "SENSOR_STEP",
     "LinearSystem",
     "Start",
+    "begins_of",
     "bench_sensor",
     "chain_numbers",
     "gear_ratio_of",
@@ -41,4 +42,5 @@ __all__ = [
     "simulate_many",
     "system",
     "turned",
+    "turns",
 ]

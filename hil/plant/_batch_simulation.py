@@ -79,8 +79,7 @@ def simulate_many(
     if functions:
         return respond_many(functions, parameters, torque_nm, dt, starts, sensors, block)
     sets = len(parameters)
-    begin = np.zeros((sets, STARTS))
-    begin[:, : starts.shape[1]] = starts
+    begin = begins_of(parameters, starts)
     substeps, varies = _parts(parameters, dt)
     most = int(substeps.max())
     transition = np.zeros((sets, X.LINEAR_STATES, X.LINEAR_STATES))
@@ -115,6 +114,26 @@ def simulate_many(
 
     map_on_threads(run, _shared_out(sets))
     return out
+
+
+def begins_of(parameters: Array, starts: Array) -> Array:
+    """Starts (sets x 3 or 5) as packed models have them: 0 for what a kind has no state of; sets x 5."""
+    begin = np.zeros((len(parameters), STARTS))
+    begin[:, : starts.shape[1]] = starts
+    kind = parameters[:, P.KIND]
+    begin[kind != P.THREE_INERTIA, VEHICLE:] = 0.0
+    begin[kind == P.RIGID, WHEEL:] = 0.0
+    return begin
+
+
+def turns(parameters: Array) -> npt.NDArray[np.bool_]:
+    """Which of packed models (sets x slots) have a force that follows an angle."""
+    found = np.zeros(len(parameters), dtype=bool)
+    for effect in P.ACTING:
+        if effect.law.follows is not None:
+            places = [P.place(effect.id, name) for name in effect.acting()]
+            found |= np.any(parameters[:, places] != effect.off, axis=1)
+    return found
 
 
 def _shared_out(sets: int) -> list[slice]:

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -60,7 +61,8 @@ class Spectrum:
             lowest_hz: bands below do not count.
         """
         length = _window_of(values.shape[1], rate_hz)
-        transform = transformed(values, rate_hz) * self.weights(length, rate_hz, lowest_hz)[:, channels]
+        transform = transformed(values, rate_hz)
+        transform *= self.weights(length, rate_hz, lowest_hz).T[channels, None]
         return np.asarray(transform.reshape(len(values), -1).view(float), dtype=float)
 
     def rising(self, values: Array, channels: Channels, rate_hz: float) -> Array:
@@ -81,16 +83,15 @@ class Spectrum:
         """Slope of half the squares of `weighed` by each of values (blocks x channels): its transpose."""
         firsts, window = _windows(len(values), rate_hz)
         length = len(window)
-        slopes = (
-            transformed(values[None], rate_hz)[0] * self.weights(length, rate_hz, lowest_hz)[:, channels] ** 2
-        )
-        slopes[:, 0] *= 2.0  # of one sign of frequency only
+        slopes = transformed(values[None], rate_hz)[0]
+        slopes *= self.weights(length, rate_hz, lowest_hz).T[channels, None] ** 2
+        slopes[..., 0] *= 2.0  # of one sign of frequency only
         if length % 2 == 0:
-            slopes[:, -1] *= 2.0
-        parts = 0.5 * length * np.fft.irfft(slopes, length, axis=1) * window[:, None]
+            slopes[..., -1] *= 2.0
+        parts = 0.5 * length * np.fft.irfft(slopes, length) * window
         back = np.zeros(values.shape)
-        for first, part in zip(firsts.tolist(), parts, strict=True):
-            back[first : first + length] += part
+        for place, first in enumerate(firsts.tolist()):
+            back[first : first + length] += parts[:, place].T
         return back
 
 
@@ -169,16 +170,19 @@ class Powers:
 
 
 def transformed(values: Array, rate_hz: float) -> npt.NDArray[np.complex128]:
-    """Windows of values (sets x blocks x channels) by frequency: sets x windows x bins x channels.
+    """Windows of values (sets x blocks x channels) by frequency: sets x channels x windows x bins.
 
     Hann's windows of `SEGMENT_S` or the whole, lapped by half or more, so that a slow misfit does not leak
     into the octaves of noise; squares over windows and bins are powers of a block times bins.
     """
     firsts, window = _windows(values.shape[1], rate_hz)
-    parts = np.stack([values[:, first : first + len(window)] for first in firsts], axis=1)
-    return np.asarray(np.fft.rfft(parts * window[:, None], axis=2))
+    parts = np.empty((len(values), values.shape[2], len(firsts), len(window)))
+    for place, first in enumerate(firsts.tolist()):
+        np.multiply(values[:, first : first + len(window)].swapaxes(1, 2), window, out=parts[:, :, place])
+    return np.asarray(np.fft.rfft(parts))
 
 
+@lru_cache
 def _windows(blocks: int, rate_hz: float) -> tuple[npt.NDArray[np.int64], Array]:
     """First block of each window of a recording of so many blocks, and the factor of each of its blocks."""
     length = _window_of(blocks, rate_hz)
@@ -189,6 +193,7 @@ def _windows(blocks: int, rate_hz: float) -> tuple[npt.NDArray[np.int64], Array]
     return np.linspace(0, blocks - length, count).round().astype(np.int64), window
 
 
+@lru_cache
 def _unseen(blocks: int, rate_hz: float) -> Array:
     """Root of the share of each block's weight that a recording's first window leaves, as it rises."""
     firsts, window = _windows(blocks, rate_hz)
@@ -214,8 +219,8 @@ def powers_of(
         squares = np.abs(transformed(error[None], rate_hz)[0]) ** 2
         band = _bands(edges, _window_of(len(error), rate_hz), rate_hz)
         inside = np.stack([np.bincount(band, minlength=len(edges) - 1)] * error.shape[1]).astype(float)
-        for one in squares:
-            sums = np.stack([np.bincount(band, column, len(edges) - 1) for column in one.T])
+        for one in squares.swapaxes(0, 1):
+            sums = np.stack([np.bincount(band, column, len(edges) - 1) for column in one])
             there = np.isfinite(sums)
             power.append(np.where(there, sums / np.maximum(inside, 1.0), 0.0))
             bins.append(np.where(there & (edges[1:] > lowest), _LAPPED * inside, 0.0))
