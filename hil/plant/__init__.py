@@ -1,8 +1,9 @@
 """The plant: a model file turned into motion by a compiled kernel."""
 
-from hil.plant._batch_simulation import begins_of, ideal_sensors, simulate_many, turns
+from hil.plant._batch_simulation import ideal_sensors, simulate_many
 from hil.plant._linear import LinearSystem, linear_system, linear_system_of, system
 from hil.plant._motor_limits import refuse_motor_limits
+from hil.plant._packed_sets import begins_of, turns
 from hil.plant._recorded import turned
 from hil.plant._replay import Start, gear_ratio_of, load_of, replay, replayed, simulate
 from hil.plant._stability import LONGEST_STEP_S, is_stable, refuse_diverged_state, refuse_too_stiff

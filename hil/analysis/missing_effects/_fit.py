@@ -135,9 +135,11 @@ def least_squares(round_: Descent, lower: Array, upper: Array, evaluations: int)
     u = np.zeros(len(lower))
     left = round_.residual(u)
     cost, damping = float(left @ left), _DAMPING
-    slopes = round_.jacobian(u)
+    here = False
     for _ in range(evaluations - 1):
-        gradient, normal = slopes.T @ left, slopes.T @ slopes
+        if not here:
+            slopes = round_.jacobian(u)
+            gradient, normal = slopes.T @ left, slopes.T @ slopes
         free = ~(((u <= lower) & (gradient > 0.0)) | ((u >= upper) & (gradient < 0.0)))
         if not free.any():
             break
@@ -148,11 +150,11 @@ def least_squares(round_: Descent, lower: Array, upper: Array, evaluations: int)
         trial = np.clip(u + step, lower, upper)
         moved = round_.residual(trial)
         had, cost_there = cost, float(moved @ moved)
-        if cost_there < cost:
+        here = not cost_there < cost
+        if not here:
             u, left, cost, damping = trial, moved, cost_there, 0.1 * damping
             if had - cost < _SETTLED * had:
                 break
-            slopes = round_.jacobian(u)
         else:
             damping *= 10.0
             if np.max(np.abs(trial - u)) < _SMALLEST:
