@@ -16,6 +16,7 @@ import numpy.typing as npt
 from hil.analysis.missing_effects._fit import Point
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._spectrum import SEGMENT_S, bands_of, white
+from hil.core.runtime.compiled import compiled
 from hil.plant import gear_ratio_of, linear_system_of, turned
 
 Array = npt.NDArray[np.float64]
@@ -168,9 +169,20 @@ def _energy(speed_hz: Array, orders: Array, frequency: Array, gain: Array) -> Ar
     total = np.zeros(len(orders))
     for count, middle in zip(share.tolist(), middles.tolist(), strict=True):
         if count:
-            slow = orders[: np.searchsorted(orders, frequency[-1] / middle, side="right") + 1]
-            total[: len(slow)] += count * np.interp(slow * middle, frequency, gain, right=0.0)
+            _add_between(total, count, orders[0] * middle / frequency[1], gain)
     return total
+
+
+@compiled
+def _add_between(total, factor, step, values):  # type: ignore[no-untyped-def]
+    """Add factor·values at `step`, 2·`step` …, straight between places 0, 1 …; beyond them nothing."""
+    last = values.shape[0] - 1
+    for k in range(total.shape[0]):
+        at = (k + 1) * step
+        if at > last:
+            break
+        place = min(int(at), last - 1)
+        total[k] += factor * (values[place] + (at - place) * (values[place + 1] - values[place]))
 
 
 def peaks(orders: Array, promise: Array, count: int) -> list[float]:

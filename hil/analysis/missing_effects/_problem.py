@@ -132,8 +132,11 @@ class Problem:
         one = self.series[index]
         seen = _bounded(values if one.has.all() else values[..., one.has])
         first = seen[:, 0] / self.noise[one.has]
-        windows = self.spectrum.weighed(seen, one.has, one.rate_hz, one.lowest_hz)
-        return np.concatenate([windows, self.spectrum.rising(seen, one.has, one.rate_hz), first], axis=1)
+        beginning = np.concatenate([self.spectrum.rising(seen, one.has, one.rate_hz), first], axis=1)
+        room = beginning.shape[1]
+        numbers = self.spectrum.weighed(seen, one.has, one.rate_hz, one.lowest_hz, room)
+        numbers[:, -room:] = beginning
+        return numbers
 
     def start_basis(self, index: int, hypothesis: Hypothesis, start: Array) -> tuple[Array, Array, Array]:
         """Change of weighed errors with a recording's start (numbers x states), sizes, and its basis."""

@@ -17,7 +17,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.missing_effects._fit import Linearised, Point, growth, without
+from hil.analysis.missing_effects._fit import Linearised, Point, growth
 from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of
 from hil.analysis.missing_effects._orders import orders_of
 from hil.analysis.missing_effects._problem import Problem
@@ -189,9 +189,15 @@ class _Projection:
             starts = np.repeat(self.at.point.starts[index][None], len(packed), axis=0)
             shown = self.problem.simulated(index, packed, starts, keep=False)
             change = self.problem.weighed(index, shown - self.plain[index])
-            change = without(self.at.bases[index], change.T)
+            by_starts = (
+                change @ self.at.bases[index]
+            )  # what starts could do; misfit and slopes are without it
             here = slice(*self.ends[index : index + 2])
-            return change.T @ change, change.T @ self.at.left[here], self.at.slopes[here].T @ change
+            return (
+                change @ change.T - by_starts @ by_starts.T,
+                change @ self.at.left[here],
+                (change @ self.at.slopes[here]).T,
+            )
 
         normal, right, by_numbers = (sum(parts) for parts in zip(*self.problem.each(of), strict=True))
         taken = self.at.covariance @ by_numbers

@@ -17,6 +17,7 @@ likelihood in the sense of J. Miller, D. Dunson, J. Am. Statist. Assoc. 114 (201
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -53,17 +54,26 @@ class Spectrum:
         bands = np.where(self.edges_hz[1:] > lowest_hz, 1.0 / np.sqrt(self.variance), 0.0)
         return np.asarray(bands.T[_bands(self.edges_hz, length, rate_hz)])
 
-    def weighed(self, values: Array, channels: Channels, rate_hz: float, lowest_hz: float) -> Array:
+    def weighed(
+        self, values: Array, channels: Channels, rate_hz: float, lowest_hz: float, room: int = 0
+    ) -> Array:
         """sets x blocks x channels as numbers, sets x numbers, half whose squares add to -log L.
 
         Args:
             channels: which of the three `values` has.
             lowest_hz: bands below do not count.
+            room: for so many numbers of each set behind these.
         """
-        length = _window_of(values.shape[1], rate_hz)
-        transform = transformed(values, rate_hz)
-        transform *= self.weights(length, rate_hz, lowest_hz).T[channels, None]
-        return np.asarray(transform.reshape(len(values), -1).view(float), dtype=float)
+        firsts, window = _windows(values.shape[1], rate_hz)
+        weights = self.weights(len(window), rate_hz, lowest_hz).T[channels, None]
+        shape = (len(weights), len(firsts), weights.shape[2])
+        numbers = 2 * math.prod(shape)
+        out = np.empty((len(values), numbers + room))
+        for one, row in zip(values, out, strict=True):  # set by set, as it stays in the processor's cache
+            transform = row[:numbers].view(complex).reshape(shape)
+            transformed(one[None], rate_hz, transform[None])
+            transform *= weights
+        return out
 
     def rising(self, values: Array, channels: Channels, rate_hz: float) -> Array:
         """sets x blocks x channels as weighed numbers of the beginning, where windows weigh little.
@@ -169,7 +179,9 @@ class Powers:
         return p, n, d, np.maximum(np.max(self.bins, axis=(0, 1)) / _LAPPED, 1.0)
 
 
-def transformed(values: Array, rate_hz: float) -> npt.NDArray[np.complex128]:
+def transformed(
+    values: Array, rate_hz: float, out: npt.NDArray[np.complex128] | None = None
+) -> npt.NDArray[np.complex128]:
     """Windows of values (sets x blocks x channels) by frequency: sets x channels x windows x bins.
 
     Hann's windows of `SEGMENT_S` or the whole, lapped by half or more, so that a slow misfit does not leak
@@ -179,7 +191,7 @@ def transformed(values: Array, rate_hz: float) -> npt.NDArray[np.complex128]:
     parts = np.empty((len(values), values.shape[2], len(firsts), len(window)))
     for place, first in enumerate(firsts.tolist()):
         np.multiply(values[:, first : first + len(window)].swapaxes(1, 2), window, out=parts[:, :, place])
-    return np.asarray(np.fft.rfft(parts))
+    return np.asarray(np.fft.rfft(parts, out=out))
 
 
 @lru_cache
