@@ -3,6 +3,7 @@
 from hil.plant._batch_simulation import ideal_sensors, simulate_many
 from hil.plant._linear import LinearSystem, linear_system, linear_system_of, system
 from hil.plant._motor_limits import refuse_motor_limits
+from hil.plant._packed_sets import begins_of, turns
 from hil.plant._recorded import turned
 from hil.plant._replay import Start, gear_ratio_of, load_of, replay, replayed, simulate
 from hil.plant._stability import LONGEST_STEP_S, is_stable, refuse_diverged_state, refuse_too_stiff
@@ -21,6 +22,7 @@ __all__ = [
     "SENSOR_STEP",
     "LinearSystem",
     "Start",
+    "begins_of",
     "bench_sensor",
     "chain_numbers",
     "gear_ratio_of",
@@ -41,4 +43,5 @@ __all__ = [
     "simulate_many",
     "system",
     "turned",
+    "turns",
 ]

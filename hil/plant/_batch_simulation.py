@@ -13,7 +13,6 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.chain import Chain
 from hil.core.model import TransferFunction
 from hil.core.runtime.compiled import compiled, compiled_without_lock, inlined
 from hil.core.runtime.thread_map import map_on_threads, threads
@@ -24,20 +23,27 @@ from hil.plant import states as X
 from hil.plant._functions import respond_many
 from hil.plant._held_linear import step_matrices
 from hil.plant._motion import acting_of, chain_of, motion_of, relative_speed
+from hil.plant._packed_sets import (
+    BY_ANGLE,
+    CONSTANT,
+    SHAFT,
+    SPEED,
+    TYRE,
+    VEHICLE,
+    WHEEL,
+    begins_of,
+    parts_of,
+)
 from hil.plant._stick_slip import mean_friction
 from hil.plant._torque_path import over_samples
-from hil.plant._tuples import plus_product, plus_row, put
+from hil.plant._tuples import plus, plus_product, plus_row, put
 from hil.plant.kernel import as_tuple
 from hil.plant.sensors import COLUMNS, GAIN, record
 
 Array = npt.NDArray[np.float64]
 
 CHANNELS = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
-SPEED, WHEEL, SHAFT = range(3)  # of the channels, and of a start
-VEHICLE, TYRE = 3, 4  # of a start alone
-STARTS = 5
 _PARTS_PER_THREAD = 4
-_CONSTANT, _BY_ANGLE, _BY_MOTION = range(3)  # what forces vary with; an angle alone may be known beforehand
 
 
 def ideal_sensors(sets: int) -> Array:
@@ -79,9 +85,8 @@ def simulate_many(
     if functions:
         return respond_many(functions, parameters, torque_nm, dt, starts, sensors, block)
     sets = len(parameters)
-    begin = np.zeros((sets, STARTS))
-    begin[:, : starts.shape[1]] = starts
-    substeps, varies = _parts(parameters, dt)
+    begin = begins_of(parameters, starts)
+    substeps, varies = parts_of(parameters, dt)
     most = int(substeps.max())
     transition = np.zeros((sets, X.LINEAR_STATES, X.LINEAR_STATES))
     torque = np.zeros((sets, 2 * most, X.LINEAR_STATES))
@@ -129,29 +134,6 @@ def _matrices(linear: bytes, dt: float, substeps: int) -> tuple[Array, Array, Ar
     p = np.zeros(len(P.SLOTS))
     p[: P.CHAIN] = np.frombuffer(linear)
     return step_matrices(p, dt, substeps)
-
-
-def _parts(parameters: Array, dt: float) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    """In how many parts each model's samples are cut, and what its forces vary with (`_CONSTANT` …)."""
-    steps = np.ones(len(parameters), np.int64)
-    varies = np.full(len(parameters), _CONSTANT, np.int64)
-    for effect in P.ACTING:
-        law, first = effect.law, P.FIRST[effect.id]
-        own = parameters[:, first : first + len(effect.parameters)]
-        acts = np.any(
-            parameters[:, [P.place(effect.id, name) for name in effect.acting()]] != effect.off, axis=1
-        )
-        if not acts.any() or any(one is not None for one in (law.shape, law.limit, law.slope)):
-            continue
-        steady = law.steady(tuple(own.T)) if law.steady is not None else False
-        with_what = _BY_MOTION if law.follows is None else _BY_ANGLE
-        varies = np.where(acts & ~np.asarray(steady), np.maximum(varies, with_what), varies)
-        if law.steps is not None:
-            for index in np.flatnonzero(acts):
-                p = parameters[index]
-                cut = law.steps(Chain(*p[: P.CHAIN]), tuple(own[index]), dt)
-                steps[index] = max(steps[index], cut)
-    return steps, varies
 
 
 @compiled
@@ -209,9 +191,7 @@ def _run_linear(drive, whole, p, x, substeps, column, transition, fine):  # type
 @inlined
 def _pushed(y, f, held):  # type: ignore[no-untyped-def]
     """State with the effect of forces, by the rows of `held` (or `rising`)."""
-    y = plus_row(plus_row(y, f[F.SHAFT], held, F.SHAFT), f[F.LOSS], held, F.LOSS)
-    y = plus_row(y, f[F.LOAD], held, F.LOAD)
-    return plus_row(plus_row(y, f[F.TYRE], held, F.TYRE), f[F.TYRE_RATE], held, F.TYRE_RATE)
+    return plus_product(y, f, held)
 
 
 @inlined
@@ -231,7 +211,7 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, l
     x, memories = first
     chain, acting = chain_of(p), acting_of(p)
     turns, leaps = L.turns(p), L.leaps(p)
-    known = varies == _BY_ANGLE and angles.shape[0] > 0  # forces are, before the motion is
+    known = varies == BY_ANGLE and angles.shape[0] > 0  # forces are, before the motion is
     gain = held[F.LOSS, X.HOUSING_SPEED] - held[F.LOSS, X.ROTOR_SPEED]
     friction = 0.0
     at = F.first_angles(angles, x, p)
@@ -249,7 +229,7 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, l
         fine[k, WHEEL] = x[X.WHEEL_SPEED]
         fine[k, SHAFT] = F.shaft_torque(x, f, brakes, p, shown[k], acting.dry)
         for sub in range(substeps):
-            y = _pushed(_moved(x, sub, old, new, column, transition), f, held)
+            y = plus(_pushed(X.LINEAR_AT_REST, f, held), 1.0, _moved(x, sub, old, new, column, transition))
             if load is not None:
                 y = _braked(y, brakes + sub * rises, rises, held, rising, has_wheel)
             y = plus_row(y, foreseen, rising, F.SHAFT)
@@ -258,7 +238,7 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, l
                 level = F.level(before, chain, memories, p)
                 friction = mean_friction(before, relative_speed(y), gain, level)
             y = plus_row(y, friction, held, F.LOSS)
-            if varies == _CONSTANT:
+            if varies == CONSTANT:
                 x = y
                 continue
             part = (sub + 1.0) / substeps
@@ -333,11 +313,11 @@ def _run(torque, dt, vector, start, substeps, varies, matrices, angles, load, fi
     _shown(acting, ends, dt, whole, p, shown)
     drive = (acting, shown)
     h = dt / substeps
-    known = varies == _BY_ANGLE and angles.shape[0] > 0 and load is None
+    known = varies == BY_ANGLE and angles.shape[0] > 0 and load is None
     does = acting_of(p)
     if known and not (does.dry or does.load or does.tyre or does.memory):
         _run_by_angle(drive, whole, p, first, h, substeps, matrices, angles, fine)
-    elif varies != _CONSTANT or L.pushes(p) or load is not None:
+    elif varies != CONSTANT or L.pushes(p) or load is not None:
         _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, load, fine)
     else:
         _run_linear(drive, whole, p, first[0], substeps, matrices[1], matrices[0], fine)

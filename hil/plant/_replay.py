@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +17,7 @@ from hil.plant import _recorded, kernel, slots
 from hil.plant._batch_simulation import simulate_many
 from hil.plant._functions import respond_many
 from hil.plant._stability import LONGEST_STEP_S, refuse_divergence, refuse_too_stiff
-from hil.plant.sensors import measured, sensor_of
+from hil.plant.sensors import STEP, measured, sensor_of
 from hil.plant.sides import LUMPED, form_of
 
 Array = npt.NDArray[np.float64]
@@ -252,7 +253,25 @@ def settled_start(
         channels = simulate(model, torque, dt, from_states(at), load_nm=load)
         return np.column_stack([channels.get(name, np.full(count, np.nan)) for name in OUTPUTS])
 
-    return from_states(_recorded.settled(read, errors, _unrecorded(model, torque, dt), measured, show))
+    shows = _by_superposition(show, read) if _is_linear(model) else show
+    return from_states(_recorded.settled(read, errors, _unrecorded(model, torque, dt), measured, shows))
+
+
+def _is_linear(model: Model) -> bool:
+    """Whether outputs of a mechanical model go straight with its start."""
+    if model.kind == "transfer_function" or form_of(model)[len(LUMPED) :]:
+        return False
+    forces = slots.pack(model)[slots.CHAIN :] != slots.pack_nothing()[slots.CHAIN :]
+    rounded = any(sensor_of(model, name)[STEP] > 0.0 for name in OUTPUTS)
+    return not (forces.any() or rounded)
+
+
+def _by_superposition(show: Callable[[Array], Array], first: Array) -> Callable[[Array], Array]:
+    """What a linear model shows from any start, by what it shows from `first` and from one beside it each."""
+    plain = show(first)
+    sizes = np.maximum(np.abs(first), 1.0)
+    slopes = np.stack([(show(first + one) - plain) / one.sum() for one in np.diag(sizes)])
+    return lambda at: np.asarray(plain + np.tensordot(at - first, slopes, axes=1))
 
 
 def _unrecorded(model: Model, torque_nm: Array, dt: float) -> Array:

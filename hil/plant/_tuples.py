@@ -85,17 +85,25 @@ def plus_row(typing_context, x, factor, matrix, row):  # type: ignore[no-untyped
 
 @intrinsic
 def plus_product(typing_context, x, y, matrix):  # type: ignore[no-untyped-def]
-    """x + y·matrix, square, C-contiguous and as wide as the tuples are long; not checked."""
+    """x + y·matrix, C-contiguous, as wide as x is long and as high as y; not checked.
+
+    Rows are summed in pairs, and x comes last: each sum waits for those before it.
+    """
     del typing_context
 
     def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
         first, factors, array = given
         width = signature.return_type.count
-        total = _vector(builder, first, width)
-        for i in range(width):
+        parts = []
+        for i in range(signature.args[1].count):
             at = context.get_constant(types.intp, i)
             values = _row(context, builder, signature.args[2], array, at, width)
-            total = _added(builder, total, builder.extract_value(factors, i), values, width)
+            factor = builder.extract_value(factors, i)
+            parts.append(builder.fmul(_everywhere(builder, factor, width), values))
+        while len(parts) > 1:
+            odd = parts[len(parts) - len(parts) % 2 :]
+            parts = [builder.fadd(*pair) for pair in zip(parts[::2], parts[1::2], strict=False)] + odd
+        total = builder.fadd(_vector(builder, first, width), parts[0])
         return _tuple(builder, total, first, width)
 
     return x(x, y, matrix), code

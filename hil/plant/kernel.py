@@ -12,7 +12,7 @@ import numpy as np
 from numba.extending import overload
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
-from hil.core.runtime.compiled import chosen_by_type, compiled, inlined
+from hil.core.runtime.compiled import chosen_by_type, compiled, compiled_without_lock, inlined
 from hil.plant import _equations as E
 from hil.plant import _laws as L
 from hil.plant import sides as S
@@ -187,7 +187,7 @@ def initial_state(p, motor_speed, wheel_speed, shaft_torque, motor_torque, wheel
     return put(x, X.LAGGED, motor_torque), memories
 
 
-@compiled
+@compiled_without_lock
 def run(torque, load, coupled, dt, vector, start, longest_step, out, beside=()):  # type: ignore[no-untyped-def]
     """Replay `torque` (n samples, held for `dt` each) into `out` (n x OUTPUT_COLUMNS).
 

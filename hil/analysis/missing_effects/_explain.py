@@ -22,6 +22,7 @@ from hil.analysis.missing_effects._verdict import Judged, judged
 from hil.core.channels import OUTPUTS
 from hil.core.model import Model
 from hil.core.recording import Recording
+from hil.core.runtime.thread_map import map_on_threads
 
 Array = npt.NDArray[np.float64]
 
@@ -100,7 +101,8 @@ class _Shown:
     def gaps(self, replays: Sequence[Replay], best: Candidate) -> dict[str, Gap]:
         """Of the base, the numbers alone and the best hypothesis."""
         three = (self.problem.model, *(one.point.hypothesis.model() for one in (self.done.found[()], best)))
-        errors = [np.concatenate([one.errors(model) for one in replays]) for model in three]
+        each = map_on_threads(lambda one: [one.errors(model) for model in three], replays)
+        errors = [np.concatenate(parts) for parts in zip(*each, strict=True)]
         measured = np.concatenate([one.series.measured for one in replays])
         spread = np.sqrt(_mean((measured - _mean(measured)) ** 2))
         rms = [np.sqrt(_mean(one**2)) / spread for one in errors]

@@ -104,7 +104,7 @@ def point_at(problem: Problem, hypothesis: Hypothesis, starts: Sequence[Array] |
 def with_better_starts(problem: Problem, point: Point) -> Point:
     """The same hypothesis from the starts that suit the data best."""
     for _ in range(_START_ROUNDS):
-        directions = [problem.start_basis(i, point.hypothesis, s) for i, s in enumerate(point.starts)]
+        directions = _directions(problem, point.hypothesis, point.starts)
         better = _better_starts(problem, point.hypothesis, point.starts, directions)
         point = point_at(problem, point.hypothesis, better)
     return point
@@ -139,9 +139,11 @@ def least_squares(round_: Descent, lower: Array, upper: Array, evaluations: int)
     u = np.zeros(len(lower))
     left = round_.residual(u)
     cost, damping = float(left @ left), _DAMPING
-    slopes = round_.jacobian(u)
+    here = False
     for _ in range(evaluations - 1):
-        gradient, normal = slopes.T @ left, slopes.T @ slopes
+        if not here:
+            slopes = round_.jacobian(u)
+            gradient, normal = slopes.T @ left, slopes.T @ slopes
         free = ~(((u <= lower) & (gradient > 0.0)) | ((u >= upper) & (gradient < 0.0)))
         if not free.any():
             break
@@ -152,11 +154,11 @@ def least_squares(round_: Descent, lower: Array, upper: Array, evaluations: int)
         trial = np.clip(u + step, lower, upper)
         moved = round_.residual(trial)
         had, cost_there = cost, float(moved @ moved)
-        if cost_there < cost:
+        here = not cost_there < cost
+        if not here:
             u, left, cost, damping = trial, moved, cost_there, 0.1 * damping
             if had - cost < _SETTLED * had:
                 break
-            slopes = round_.jacobian(u)
         else:
             damping *= 10.0
             if np.max(np.abs(trial - u)) < _SMALLEST:
@@ -207,30 +209,38 @@ class _Round:
     ) -> None:
         self.problem, self.hypothesis = problem, hypothesis
         self.states, self.coordinates = states, coordinates
-        self.directions = [problem.start_basis(i, hypothesis, s) for i, s in enumerate(states)]
+        self.directions = _directions(problem, hypothesis, states)
         self.bases = [basis for _, _, basis in self.directions]
 
     def residual(self, u: Array) -> Array:
         packed = [self.hypothesis.moved(self.coordinates, u).packed()]
-        parts = []
-        for index, state in enumerate(self.states):
-            shown = self.problem.simulated(index, packed, state[None])
+
+        def left(index: int) -> Array:
+            shown = self.problem.simulated(index, packed, self.states[index][None])
             error = self.problem.weighed(index, self.problem.series[index].measured - shown)[0]
-            parts.append(without(self.bases[index], error))
-        return np.concatenate([*parts, self.problem.prior(self.coordinates, u)])
+            return without(self.bases[index], error)
+
+        return np.concatenate([*self.problem.each(left), self.problem.prior(self.coordinates, u)])
 
     def jacobian(self, u: Array) -> Array:
-        parts = []
-        for index, state in enumerate(self.states):
-            _, slopes = self.problem.derivatives(index, self.hypothesis, state, self.coordinates, u)
-            parts.append(without(self.bases[index], slopes))
+        slopes = self.problem.derivatives(self.hypothesis, self.states, self.coordinates, u)
+        parts = self.problem.each(lambda index: without(self.bases[index], slopes[index]))
         prior = self.problem.prior_slopes(self.coordinates, u)
         return np.concatenate([*parts, prior.reshape(len(self.coordinates), len(self.coordinates))])
 
 
 def without(basis: Array, values: Array) -> Array:
-    """What is left of values (numbers, or numbers x k) beside an orthonormal basis."""
-    return np.asarray(values - basis @ (basis.T @ values))
+    """What is left of values (numbers, or numbers x k) beside an orthonormal basis, in their place."""
+    rows = values.T
+    rows -= (rows @ basis) @ basis.T
+    return values
+
+
+def _directions(
+    problem: Problem, hypothesis: Hypothesis, states: Sequence[Array]
+) -> list[tuple[Array, Array, Array]]:
+    """In which errors change with each recording's start (`Problem.start_basis`)."""
+    return problem.each(lambda index: problem.start_basis(index, hypothesis, states[index]))
 
 
 def _better_starts(
@@ -240,13 +250,17 @@ def _better_starts(
     directions: Sequence[tuple[Array, Array, Array]],
 ) -> list[Array]:
     """Starts that suit the data best, to first order, by the errors' change along their directions."""
-    better = []
-    for index, (state, (change, sizes, _)) in enumerate(zip(states, directions, strict=True)):
-        shown = problem.simulated(index, [hypothesis.packed()], state[None])
-        error = problem.weighed(index, problem.series[index].measured - shown)[0]
-        moves = np.linalg.lstsq(change, error, rcond=1e-7)[0]
-        moved = state + sizes * moves
-        shown = problem.simulated(index, [hypothesis.packed()], moved[None])
-        again = problem.weighed(index, problem.series[index].measured - shown)[0]
-        better.append(moved if again @ again <= error @ error else state)
-    return better
+    packed = [hypothesis.packed()]
+
+    def errors(index: int, start: Array) -> Array:
+        shown = problem.simulated(index, packed, start[None])
+        return np.asarray(problem.weighed(index, problem.series[index].measured - shown)[0])
+
+    def better(index: int) -> Array:
+        change, sizes, _ = directions[index]
+        error = errors(index, states[index])
+        moved = states[index] + sizes * np.linalg.lstsq(change, error, rcond=1e-7)[0]
+        again = errors(index, moved)
+        return moved if again @ again <= error @ error else states[index]
+
+    return problem.each(better)

@@ -162,13 +162,13 @@ def _spectra(one: Series) -> tuple[int, Array, ComplexArray, Array]:
     rate = 1.0 / one.dt
     whole = np.column_stack([one.torque, one.samples])[None]
     shown = transformed(whole, rate)[0] / np.sqrt(one.block)
-    shown = shown[:, : 1 + (shown.shape[1] - 1) // one.block]
-    torque, outputs = shown[..., 0], shown[..., 1:]
+    shown = shown[..., : 1 + (shown.shape[2] - 1) // one.block]
+    torque, outputs = shown[0], shown[1:]
     return (
-        len(shown),
+        len(torque),
         np.sum(np.abs(torque) ** 2, axis=0),
-        np.sum(outputs * np.conj(torque)[..., None], axis=0),
-        np.sum(np.abs(outputs) ** 2, axis=0),
+        np.sum(outputs * np.conj(torque), axis=1).T,
+        np.sum(np.abs(outputs) ** 2, axis=1).T,
     )
 
 

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from hil.analysis.missing_effects._fit import Point
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._spectrum import SEGMENT_S, bands_of, powers_of, white
+from hil.core.runtime.compiled import compiled
 from hil.plant import gear_ratio_of, linear_system_of, turned
 
 Array = npt.NDArray[np.float64]
@@ -24,6 +25,7 @@ Side = Literal["wheel", "rotor"]
 _HIGHEST = 60.0  # order
 _FINE = 0.02  # distance of orders that are looked at, at most
 _OF_A_TURN = 0.25  # by which an order may be off over the longest recording: it would lose its phase
+_BINS = 4  # of angle in a period of the highest order
 PERIODS = 2.0
 """Of a ripple that a recording must hold."""
 _COUNT = 4
@@ -36,41 +38,67 @@ def orders_of(problem: Problem, point: Point, side: Side) -> list[float]:
     A ripple that is most of the misfit makes its own octaves weigh little.
     """
     by_noise = problem.weighed_by(white(problem.noise, problem.rate_hz))
-    found = [_orders_by(one, point, side) for one in (problem, by_noise)]
-    return list(dict.fromkeys(found[0] + found[1]))
-
-
-def _orders_by(problem: Problem, point: Point, side: Side) -> list[float]:
     system = linear_system_of(point.hypothesis.packed()[0])
     fine = fineness(turns(problem, side))
     orders = np.arange(fine, _HIGHEST, fine)
-    slopes, energy, whole = np.zeros(len(orders), complex), np.zeros(len(orders)), 0.0
+    ways = [_Gathered(one, len(orders)) for one in (problem, by_noise)]
     for index, one in enumerate(problem.series):
-        error = point.errors[index]
-        count = len(error)
+        count = len(point.errors[index])
         frequency: Array = np.fft.rfftfreq(count, 1.0 / one.rate_hz).astype(np.float64)
         response = np.zeros((3, len(frequency)), complex)
         fast = frequency > 1.0 / SEGMENT_S  # what is slower the starts of windows take up
         response[:, fast] = system.response(frequency[fast], _SOURCES[side])
-        weight = problem.spectrum.weights(count, one.rate_hz, one.lowest_hz).T ** 2
-        slope = problem.spectrum.sent_back(
-            np.nan_to_num(error[:, one.has]), one.has, one.rate_hz, one.lowest_hz
-        )
-        whole += float(np.sum(np.nan_to_num(error[:, one.has]) * slope))
-        back = np.sum(np.conj(response[one.has]) * np.fft.rfft(slope, axis=0).T, axis=0)
-        gain = np.sum(np.abs(response[one.has]) ** 2 * weight[one.has], axis=0)
         angle = problem.angles[index][: count * one.block, 0 if side == "wheel" else 1]
         angle = angle.reshape(count, one.block).mean(axis=1)
         speed = np.abs(np.gradient(angle)) * one.rate_hz / (2 * np.pi)
         # a ripple faster than errors are sampled must not look like a slow one
         finer = int(np.ceil(2.0 * _HIGHEST * np.max(speed) / one.rate_hz)) + 1
-        at = np.arange(count * finer) / finer
-        pushed = np.fft.irfft(back, count * finer) * finer
-        slopes += over_angle(pushed, np.interp(at, np.arange(count), angle), fine, len(orders)) / finer
-        energy += _energy(speed, orders, frequency, gain)
-    promise = np.abs(slopes) ** 2 / np.maximum(energy, 1e-250)
-    promise[promise > whole] = 0.0  # more than there is: an order that the plant does not show
-    return peaks(orders, np.where(orders * turns(problem, side) >= PERIODS, promise, 0.0), _COUNT)
+        at = np.interp(np.arange(count * finer) / finer, np.arange(count), angle)
+        bins = bins_of(at, fine, len(orders))
+        for way in ways:
+            way.add(index, point.errors[index], response[one.has], bins, orders, speed, frequency)
+    found: list[float] = []
+    slopes = by_order(np.array([way.pushed for way in ways]), len(orders))
+    for way, slope in zip(ways, slopes, strict=True):
+        promise = np.abs(slope) ** 2 / np.maximum(way.energy, 1e-250)
+        promise[promise > way.whole] = 0.0  # more than there is: an order that the plant does not show
+        promise[orders * turns(problem, side) < PERIODS] = 0.0
+        found += peaks(orders, promise, _COUNT)
+    return list(dict.fromkeys(found))
+
+
+class _Gathered:
+    """Of all recordings, by one weighing: what a ripple of each order promises, and what there is.
+
+    `pushed` is the torque sent back by bins of angle, `energy` that of each order's ripple behind the plant.
+    """
+
+    def __init__(self, problem: Problem, orders: int) -> None:
+        self.problem = problem
+        self.pushed = np.zeros(_BINS * orders)
+        self.energy = np.zeros(orders)
+        self.whole = 0.0
+
+    def add(
+        self,
+        index: int,
+        errors: Array,
+        response: npt.NDArray[np.complex128],
+        bins: npt.NDArray[np.int64],
+        orders: Array,
+        speed_hz: Array,
+        frequency: Array,
+    ) -> None:
+        """One recording: its errors (blocks x 3), response of its channels, bins of angle of finer blocks."""
+        one, spectrum = self.problem.series[index], self.problem.spectrum
+        error = np.nan_to_num(errors[:, one.has])
+        slope = spectrum.sent_back(error, one.has, one.rate_hz, one.lowest_hz)
+        self.whole += float(np.sum(error * slope))
+        back = np.sum(np.conj(response) * np.fft.rfft(slope, axis=0).T, axis=0)
+        self.pushed += np.bincount(bins, np.fft.irfft(back, len(bins)), len(self.pushed))
+        weight = spectrum.weights(len(errors), one.rate_hz, one.lowest_hz).T ** 2
+        gain = np.sum(np.abs(response) ** 2 * weight[one.has], axis=0)
+        self.energy += _energy(speed_hz, orders, frequency, gain)
 
 
 def turned_with(problem: Problem, point: Point) -> Problem:
@@ -112,10 +140,24 @@ def fineness(turned: float) -> float:
 
 def over_angle(values: Array, angle: Array, fine: float, count: int) -> npt.NDArray[np.complex128]:
     """Σ values·e^{-j·order·angle} at orders `fine`, 2·`fine` …: angles modulo one period of the finest."""
-    period = 2 * np.pi / fine
-    bins = 4 * count
-    place = np.floor((angle % period) / period * bins).astype(int) % bins
-    return np.asarray(np.fft.rfft(np.bincount(place, values, bins))[1 : count + 1])
+    sums = np.bincount(bins_of(angle, fine, count), values, _BINS * count)
+    return np.asarray(np.fft.rfft(sums)[1 : count + 1])
+
+
+def bins_of(angle: Array, fine: float, count: int) -> npt.NDArray[np.int64]:
+    """Where angles lie in one period of the finest order, in `_BINS` a period of the highest."""
+    period, bins = 2 * np.pi / fine, _BINS * count
+    return np.asarray(np.floor((angle % period) / period * bins).astype(np.int64) % bins)
+
+
+def by_order(pairs: Array, count: int) -> npt.NDArray[np.complex128]:
+    """Transforms of two sums by bins of angle (2 x bins) at so many orders: 2 x orders.
+
+    One is the real part of what is transformed, the other the imaginary part.
+    """
+    both = np.fft.fft(pairs[0] + 1j * pairs[1])
+    here, mirrored = both[1 : count + 1], np.conj(both[: -count - 1 : -1])
+    return np.stack([0.5 * (here + mirrored), -0.5j * (here - mirrored)])
 
 
 def _energy(speed_hz: Array, orders: Array, frequency: Array, gain: Array) -> Array:
@@ -126,8 +168,20 @@ def _energy(speed_hz: Array, orders: Array, frequency: Array, gain: Array) -> Ar
     total = np.zeros(len(orders))
     for count, middle in zip(share.tolist(), middles.tolist(), strict=True):
         if count:
-            total += count * np.interp(orders * middle, frequency, gain, right=0.0)
+            _add_between(total, count, orders[0] * middle / frequency[1], gain)
     return total
+
+
+@compiled
+def _add_between(total, factor, step, values):  # type: ignore[no-untyped-def]
+    """Add factor·values at `step`, 2·`step` …, straight between places 0, 1 …; beyond them nothing."""
+    last = values.shape[0] - 1
+    for k in range(total.shape[0]):
+        at = (k + 1) * step
+        if at > last:
+            break
+        place = min(int(at), last - 1)
+        total[k] += factor * (values[place] + (at - place) * (values[place + 1] - values[place]))
 
 
 def peaks(orders: Array, promise: Array, count: int) -> list[float]:

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.missing_effects._hypothesis import Coordinate, Hypothesis
 from hil.analysis.missing_effects._series import Series
+from hil.analysis.missing_effects._shown import Shown
 from hil.analysis.missing_effects._spectrum import Powers, Spectrum, powers_of
 from hil.core.model import Model
-from hil.plant import gear_ratio_of, simulate_many
+from hil.core.runtime.thread_map import map_on_threads
+from hil.plant import begins_of, gear_ratio_of, simulate_many, turns
 
 Array = npt.NDArray[np.float64]
+_Result = TypeVar("_Result")
 
 STATES = 5  # of a start: motor speed, wheel speed, shaft torque, and two of a motion inside the tyre
 _FAR = 1e9  # a simulation that runs away is so many standard deviations off, not infinitely many
@@ -38,6 +42,7 @@ class Problem:
     scales: dict[str, float] = field(default_factory=dict)
     held: frozenset[str] = frozenset()
     angles: tuple[Array, ...] = ()
+    shown: Shown = field(default_factory=Shown, repr=False, compare=False)
 
     def weighed_by(self, spectrum: Spectrum) -> Problem:
         """The same, errors weighed by another spectrum."""
@@ -78,14 +83,32 @@ class Problem:
         ratio = gear_ratio_of(self.model) or 1.0
         return [one.first_state(ratio) for one in self.series]
 
-    def simulated(self, index: int, packed: Sequence[tuple[Array, Array]], starts: Array) -> Array:
-        """Channels of a recording by several models: sets x blocks x 3; NaN where one runs away."""
-        one = self.series[index]
+    def each(self, function: Callable[[int], _Result]) -> list[_Result]:
+        """A function of each recording's index, side by side on threads."""
+        return map_on_threads(function, range(len(self.series)))
+
+    def simulated(
+        self, index: int, packed: Sequence[tuple[Array, Array]], starts: Array, *, keep: bool = True
+    ) -> Array:
+        """Channels of a recording by several models: sets x blocks x 3; NaN where one runs away.
+
+        Args:
+            keep: whether the same may be asked for again. What comes back is not to be written to.
+        """
+        one, angles = self.series[index], self.angles[index]
         slots, sensors = (np.stack([p[i] for p in packed]) for i in range(2))
-        shown = simulate_many(
-            slots, one.torque, one.dt, starts, sensors, one.block, self.angles[index], one.load
-        )
-        return np.asarray(shown)
+        begins = begins_of(slots, starts)
+        keys = [
+            (id(one), id(angles) if follows else 0, p.tobytes(), sensor.tobytes(), begin.tobytes())
+            for p, sensor, begin, follows in zip(slots, sensors, begins, turns(slots).tolist(), strict=True)
+        ]
+
+        def simulate(some: npt.NDArray[np.int64]) -> Array:
+            return simulate_many(
+                slots[some], one.torque, one.dt, begins[some], sensors[some], one.block, angles, one.load
+            )
+
+        return self.shown.outputs(keys, simulate, (one, angles), keep=keep)
 
     def samples(self, index: int, hypothesis: Hypothesis, start: Array) -> Array:
         """Channels of a recording by a hypothesis at every sample, n x 3."""
@@ -98,9 +121,7 @@ class Problem:
     def errors(self, hypothesis: Hypothesis, starts: Sequence[Array]) -> list[Array]:
         """Measured less simulated of each recording, blocks x 3; NaN where a channel was not recorded."""
         packed = [hypothesis.packed()]
-        return [
-            one.measured - self.simulated(i, packed, starts[i][None])[0] for i, one in enumerate(self.series)
-        ]
+        return self.each(lambda i: self.series[i].measured - self.simulated(i, packed, starts[i][None])[0])
 
     def weighed(self, index: int, values: Array) -> Array:
         """sets x blocks x 3 as weighed transforms, sets x numbers: half the squares add to -log L.
@@ -109,12 +130,13 @@ class Problem:
         model gathers on its way, so that a recording begins where it was measured to.
         """
         one = self.series[index]
-        seen = values[..., one.has]
-        if not np.all(np.abs(seen) < _FAR):  # NaN as well
-            seen = np.clip(np.nan_to_num(seen, nan=_FAR), -_FAR, _FAR)
+        seen = _bounded(values if one.has.all() else values[..., one.has])
         first = seen[:, 0] / self.noise[one.has]
-        windows = self.spectrum.weighed(seen, one.has, one.rate_hz, one.lowest_hz)
-        return np.concatenate([windows, self.spectrum.rising(seen, one.has, one.rate_hz), first], axis=1)
+        beginning = np.concatenate([self.spectrum.rising(seen, one.has, one.rate_hz), first], axis=1)
+        room = beginning.shape[1]
+        numbers = self.spectrum.weighed(seen, one.has, one.rate_hz, one.lowest_hz, room)
+        numbers[:, -room:] = beginning
+        return numbers
 
     def start_basis(self, index: int, hypothesis: Hypothesis, start: Array) -> tuple[Array, Array, Array]:
         """Change of weighed errors with a recording's start (numbers x states), sizes, and its basis."""
@@ -124,20 +146,36 @@ class Problem:
         sizes = 1e-3 * np.array([speed, speed, torque, speed, speed / 100.0])
         starts = np.concatenate([start[None], start + np.diag(sizes)])
         shown = self.simulated(index, [hypothesis.packed()] * (STATES + 1), starts)
-        change = self.weighed(index, shown[1:] - shown[0])
+        change = self._changes(index, shown[1:] - shown[0])
         left, values, _ = np.linalg.svd(change.T, full_matrices=False)
         return change.T, sizes, left[:, values > _RANK * max(values[0], 1e-300)]
 
+    def _changes(self, index: int, values: Array) -> Array:
+        """As `weighed`; sets that change nothing cost nothing."""
+        moved = np.array([one.any() for one in values], dtype=bool)
+        if moved.all():
+            return self.weighed(index, values)
+        change = self.weighed(index, values[moved] if moved.any() else values[:1])
+        whole = np.zeros((len(values), change.shape[1]))
+        whole[moved] = change[: np.count_nonzero(moved)]
+        return whole
+
     def derivatives(
-        self, index: int, hypothesis: Hypothesis, start: Array, coordinates: Sequence[Coordinate], u: Array
-    ) -> tuple[Array, Array]:
-        """Weighed errors (numbers,) and their derivatives by the coordinates (numbers x coordinates)."""
+        self, hypothesis: Hypothesis, starts: Sequence[Array], coordinates: Sequence[Coordinate], u: Array
+    ) -> list[Array]:
+        """Derivatives of each recording's weighed errors by the coordinates (numbers x coordinates)."""
         steps = np.array([_step(one, at) for one, at in zip(coordinates, u.tolist(), strict=True)])
         points = [u, *(u + np.diag(steps))]
         packed = [hypothesis.moved(coordinates, point).packed() for point in points]
-        shown = self.simulated(index, packed, np.repeat(start[None], len(points), axis=0))
-        errors = self.weighed(index, self.series[index].measured - shown)
-        return errors[0], ((errors[1:] - errors[0]) / steps[:, None]).T
+
+        def slopes(index: int) -> Array:
+            shown = self.simulated(index, packed, np.repeat(starts[index][None], len(points), axis=0))
+            shown = _bounded(shown)
+            changes = self.weighed(index, shown[0] - shown[1:])
+            changes /= steps[:, None]
+            return changes.T
+
+        return self.each(slopes)
 
     def prior(self, coordinates: Sequence[Coordinate], u: Array) -> Array:
         """Numbers of the base away from what it says: half the squares add to -log of a Cauchy density.
@@ -163,6 +201,13 @@ class Problem:
     @staticmethod
     def _away(coordinates: Sequence[Coordinate], u: Array) -> Array:
         return np.array([one.away(at) for one, at in zip(coordinates, u.tolist(), strict=True)], dtype=float)
+
+
+def _bounded(values: Array) -> Array:
+    """Values as they are, but for what runs away."""
+    if np.max(np.abs(values)) < _FAR:  # not NaN either
+        return values
+    return np.asarray(np.clip(np.nan_to_num(values, nan=_FAR), -_FAR, _FAR))
 
 
 def _step(one: Coordinate, at: float) -> float:

@@ -17,7 +17,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.missing_effects._fit import Linearised, Point, growth, without
+from hil.analysis.missing_effects._fit import Linearised, Point, growth
 from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of
 from hil.analysis.missing_effects._orders import orders_of
 from hil.analysis.missing_effects._problem import Problem
@@ -177,25 +177,29 @@ class _Projection:
         self.problem, self.at = problem, at
         self.squares = at.slopes.T @ at.slopes
         self.misfit = at.slopes.T @ at.left
-        self.plain = [
-            problem.simulated(i, [at.point.hypothesis.packed()], s[None])[0]
-            for i, s in enumerate(at.point.starts)
-        ]
+        packed = [at.point.hypothesis.packed()]
+        self.plain = problem.each(lambda i: problem.simulated(i, packed, at.point.starts[i][None])[0])
+        self.ends = np.cumsum([0, *map(len, at.bases)]).tolist()
 
     def products(self, hypotheses: Sequence[Hypothesis]) -> _Products:
         """Of the changes that hypotheses make, recording by recording."""
         packed = [one.packed() for one in hypotheses]
-        count, first = len(packed), 0
-        normal, right = np.zeros((count, count)), np.zeros(count)
-        by_numbers = np.zeros((len(self.at.coordinates), count))
-        for index, start in enumerate(self.at.point.starts):
-            shown = self.problem.simulated(index, packed, np.repeat(start[None], count, axis=0))
+
+        def of(index: int) -> tuple[Array, Array, Array]:
+            starts = np.repeat(self.at.point.starts[index][None], len(packed), axis=0)
+            shown = self.problem.simulated(index, packed, starts, keep=False)
             change = self.problem.weighed(index, shown - self.plain[index])
-            change = without(self.at.bases[index], change.T)
-            here, first = slice(first, first + len(change)), first + len(change)
-            normal += change.T @ change
-            right += change.T @ self.at.left[here]
-            by_numbers += self.at.slopes[here].T @ change
+            by_starts = (
+                change @ self.at.bases[index]
+            )  # what starts could do; misfit and slopes are without it
+            here = slice(*self.ends[index : index + 2])
+            return (
+                change @ change.T - by_starts @ by_starts.T,
+                change @ self.at.left[here],
+                (change @ self.at.slopes[here]).T,
+            )
+
+        normal, right, by_numbers = (sum(parts) for parts in zip(*self.problem.each(of), strict=True))
         taken = self.at.covariance @ by_numbers
         both = by_numbers.T @ taken
         normal += taken.T @ self.squares @ taken - both - both.T

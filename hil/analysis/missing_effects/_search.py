@@ -172,11 +172,24 @@ def search(problem: Problem, show: Callable[[str], None]) -> Search:
         was_weak, weak = weak, remains(had, has, problem.noise**2, problem.slow_noise) > HALF
         if weak and was_weak:
             break  # of two that go together the first may take off less than half, the second does not
-        best = _pruned(done, grown)
+        best = _pruned(done, _without_chance(done, grown))
         done.go_on_from(best)
         if any(EFFECTS[use.id].law.follows for use in best.point.hypothesis.terms):
             best = _with_better_angles(done, best)
     return done
+
+
+def _without_chance(done: Search, grown: Candidate) -> Candidate:
+    """A grown hypothesis, or the one before it where that does as well from the numbers of the grown one.
+
+    Beside an abrupt effect the misfit jumps with every number, and a name that takes nothing off may lead a fit
+    over a jump.
+    """
+    *before, _ = grown.point.hypothesis.terms
+    if not any(EFFECTS[use.id].abrupt for use in before):
+        return grown
+    fewer = done.fitted(grown.point.hypothesis.without(len(before)), grown)
+    return max(grown, fewer, key=done.score)
 
 
 def _with_better_angles(done: Search, best: Candidate) -> Candidate:

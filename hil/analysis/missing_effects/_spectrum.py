@@ -17,8 +17,10 @@ likelihood in the sense of J. Miller, D. Dunson, J. Am. Statist. Assoc. 114 (201
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -52,16 +54,26 @@ class Spectrum:
         bands = np.where(self.edges_hz[1:] > lowest_hz, 1.0 / np.sqrt(self.variance), 0.0)
         return np.asarray(bands.T[_bands(self.edges_hz, length, rate_hz)])
 
-    def weighed(self, values: Array, channels: Channels, rate_hz: float, lowest_hz: float) -> Array:
+    def weighed(
+        self, values: Array, channels: Channels, rate_hz: float, lowest_hz: float, room: int = 0
+    ) -> Array:
         """sets x blocks x channels as numbers, sets x numbers, half whose squares add to -log L.
 
         Args:
             channels: which of the three `values` has.
             lowest_hz: bands below do not count.
+            room: for so many numbers of each set behind these.
         """
-        length = _window_of(values.shape[1], rate_hz)
-        transform = transformed(values, rate_hz) * self.weights(length, rate_hz, lowest_hz)[:, channels]
-        return np.asarray(transform.reshape(len(values), -1).view(float), dtype=float)
+        firsts, window = _windows(values.shape[1], rate_hz)
+        weights = self.weights(len(window), rate_hz, lowest_hz).T[channels, None]
+        shape = (len(weights), len(firsts), weights.shape[2])
+        numbers = 2 * math.prod(shape)
+        out = np.empty((len(values), numbers + room))
+        for one, row in zip(values, out, strict=True):  # set by set, as it stays in the processor's cache
+            transform = row[:numbers].view(complex).reshape(shape)
+            transformed(one[None], rate_hz, transform[None])
+            transform *= weights
+        return out
 
     def rising(self, values: Array, channels: Channels, rate_hz: float) -> Array:
         """sets x blocks x channels as weighed numbers of the beginning, where windows weigh little.
@@ -81,16 +93,15 @@ class Spectrum:
         """Slope of half the squares of `weighed` by each of values (blocks x channels): its transpose."""
         firsts, window = _windows(len(values), rate_hz)
         length = len(window)
-        slopes = (
-            transformed(values[None], rate_hz)[0] * self.weights(length, rate_hz, lowest_hz)[:, channels] ** 2
-        )
-        slopes[:, 0] *= 2.0  # of one sign of frequency only
+        slopes = transformed(values[None], rate_hz)[0]
+        slopes *= self.weights(length, rate_hz, lowest_hz).T[channels, None] ** 2
+        slopes[..., 0] *= 2.0  # of one sign of frequency only
         if length % 2 == 0:
-            slopes[:, -1] *= 2.0
-        parts = 0.5 * length * np.fft.irfft(slopes, length, axis=1) * window[:, None]
+            slopes[..., -1] *= 2.0
+        parts = 0.5 * length * np.fft.irfft(slopes, length) * window
         back = np.zeros(values.shape)
-        for first, part in zip(firsts.tolist(), parts, strict=True):
-            back[first : first + length] += part
+        for place, first in enumerate(firsts.tolist()):
+            back[first : first + length] += parts[:, place].T
         return back
 
 
@@ -168,17 +179,22 @@ class Powers:
         return p, n, d, np.maximum(np.max(self.bins, axis=(0, 1)) / _LAPPED, 1.0)
 
 
-def transformed(values: Array, rate_hz: float) -> npt.NDArray[np.complex128]:
-    """Windows of values (sets x blocks x channels) by frequency: sets x windows x bins x channels.
+def transformed(
+    values: Array, rate_hz: float, out: npt.NDArray[np.complex128] | None = None
+) -> npt.NDArray[np.complex128]:
+    """Windows of values (sets x blocks x channels) by frequency: sets x channels x windows x bins.
 
     Hann's windows of `SEGMENT_S` or the whole, lapped by half or more, so that a slow misfit does not leak
     into the octaves of noise; squares over windows and bins are powers of a block times bins.
     """
     firsts, window = _windows(values.shape[1], rate_hz)
-    parts = np.stack([values[:, first : first + len(window)] for first in firsts], axis=1)
-    return np.asarray(np.fft.rfft(parts * window[:, None], axis=2))
+    parts = np.empty((len(values), values.shape[2], len(firsts), len(window)))
+    for place, first in enumerate(firsts.tolist()):
+        np.multiply(values[:, first : first + len(window)].swapaxes(1, 2), window, out=parts[:, :, place])
+    return np.asarray(np.fft.rfft(parts, out=out))
 
 
+@lru_cache
 def _windows(blocks: int, rate_hz: float) -> tuple[npt.NDArray[np.int64], Array]:
     """First block of each window of a recording of so many blocks, and the factor of each of its blocks."""
     length = _window_of(blocks, rate_hz)
@@ -189,6 +205,7 @@ def _windows(blocks: int, rate_hz: float) -> tuple[npt.NDArray[np.int64], Array]
     return np.linspace(0, blocks - length, count).round().astype(np.int64), window
 
 
+@lru_cache
 def _unseen(blocks: int, rate_hz: float) -> Array:
     """Root of the share of each block's weight that a recording's first window leaves, as it rises."""
     firsts, window = _windows(blocks, rate_hz)
@@ -214,8 +231,8 @@ def powers_of(
         squares = np.abs(transformed(error[None], rate_hz)[0]) ** 2
         band = _bands(edges, _window_of(len(error), rate_hz), rate_hz)
         inside = np.stack([np.bincount(band, minlength=len(edges) - 1)] * error.shape[1]).astype(float)
-        for one in squares:
-            sums = np.stack([np.bincount(band, column, len(edges) - 1) for column in one.T])
+        for one in squares.swapaxes(0, 1):
+            sums = np.stack([np.bincount(band, column, len(edges) - 1) for column in one])
             there = np.isfinite(sums)
             power.append(np.where(there, sums / np.maximum(inside, 1.0), 0.0))
             bins.append(np.where(there & (edges[1:] > lowest), _LAPPED * inside, 0.0))

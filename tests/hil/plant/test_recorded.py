@@ -7,11 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.core.channels import INPUT, TIME
-from hil.core.model import Model
+from hil.core.channels import INPUT, OUTPUTS, TIME
+from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
 from hil.plant import Start, replay, simulate
 from hil.plant._recorded import beginning, settled
+from hil.plant._replay import _by_superposition, _is_linear
 
 STEP_S = 1e-3
 NOISE = {"motor_speed_rad_s": 0.5, "wheel_speed_rad_s": 0.05, "shaft_torque_nm": 3.0}
@@ -70,3 +71,22 @@ def test_first_samples_without_noise_are_the_start() -> None:
 
 def test_a_channel_that_was_not_recorded_has_no_beginning() -> None:
     assert np.isnan(beginning(np.full(30, np.nan))).all()
+
+
+def test_outputs_of_a_linear_model_from_any_start_are_sums_of_those_from_a_few() -> None:
+    numbers = {"motor_inertia": 0.02, "gear_ratio": 8.0, "shaft_stiffness": 6000.0, "shaft_damping": 20.0}
+    model = Model("two_inertia", {**numbers, "vehicle_inertia": 100.0, "torque_delay": 2.5e-3})
+    torque = 10.0 * np.sin(0.02 * np.arange(500))
+
+    def show(at: np.ndarray) -> np.ndarray:
+        motor, wheel, shaft = at.tolist()
+        shown = simulate(model, torque, 1e-3, Start(motor, wheel, shaft, 0.0))
+        return np.column_stack([shown[name] for name in OUTPUTS])
+
+    at = np.array([41.0, 5.3, 17.0])
+    sums = _by_superposition(show, np.array([40.0, 5.0, 0.0]))(at)
+    assert np.max(np.abs(sums - show(at))) < 1e-9
+    assert _is_linear(model)
+    assert not _is_linear(model.with_effects(EffectUse("coulomb_friction", {"torque_nm": 1.0})))
+    rounded = EffectUse("sensor_quantization", {"channel": "motor_speed_rad_s", "step": 0.1})
+    assert not _is_linear(model.with_effects(rounded))

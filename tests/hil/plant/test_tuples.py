@@ -33,7 +33,8 @@ def test_sums_are_those_of_scalars_to_the_last_bit(width: int) -> None:
     x, y, matrix = rng.normal(size=width), rng.normal(size=width), rng.normal(size=(width, width))
     assert sums(x, 0.3, y) == tuple(x + 0.3 * y)
     assert rows(x, 0.3, matrix, width - 1) == tuple(x + 0.3 * matrix[-1])
-    expected = x
-    for factor, row in zip(y, matrix, strict=True):
-        expected = expected + factor * row
-    assert products(x, y, matrix) == tuple(expected)
+    parts = [factor * row for factor, row in zip(y, matrix, strict=True)]
+    while len(parts) > 1:
+        odd = parts[len(parts) - len(parts) % 2 :]
+        parts = [one + other for one, other in zip(parts[::2], parts[1::2], strict=False)] + odd
+    assert products(x, y, matrix) == tuple(x + parts[0])

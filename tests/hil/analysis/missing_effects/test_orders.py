@@ -10,7 +10,7 @@ import pytest
 from hil.analysis.missing_effects._fit import linearised, point_at, with_better_starts
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._noise import proven_noise
-from hil.analysis.missing_effects._orders import fineness
+from hil.analysis.missing_effects._orders import bins_of, by_order, fineness, over_angle
 from hil.analysis.missing_effects._problem import problem_of
 from hil.analysis.missing_effects._screen import promises
 from hil.analysis.missing_effects._series import series_of
@@ -58,3 +58,12 @@ def test_orders_lie_closer_the_further_a_recording_turns() -> None:
     """A quarter of a turn over the whole: a ripple between two of them would lose its phase."""
     assert fineness(10.0) == 0.02
     assert fineness(100.0) * 100.0 == 0.25
+
+
+def test_two_sums_over_an_angle_are_transformed_as_each_alone() -> None:
+    rng = np.random.default_rng(3)
+    angle, values = rng.uniform(0.0, 300.0, 500), rng.normal(size=(2, 500))
+    fine, count = 0.02, 211
+    sums = np.array([np.bincount(bins_of(angle, fine, count), one, 4 * count) for one in values])
+    alone = [over_angle(one, angle, fine, count) for one in values]
+    assert np.allclose(by_order(sums, count), alone, rtol=0.0, atol=1e-9)
