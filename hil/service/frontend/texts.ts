@@ -15,11 +15,11 @@ export interface Key {
   where: string;
 }
 
-// The first text of t and tx, the second of tn; texts that are computed are keys somewhere else as they are.
+// The first text of t, tx and said, the second of tn; texts that are computed are keys somewhere else as they are.
 export function keysIn(name: string, source: string): Key[] {
   const file = ts.createSourceFile(name, source, ts.ScriptTarget.Latest, true, ts.ScriptKind.TSX), keys: Key[] = [];
   const visit = (node: ts.Node): void => {
-    if (ts.isCallExpression(node) && ts.isIdentifier(node.expression) && ["t", "tn", "tx"].includes(node.expression.text)) {
+    if (ts.isCallExpression(node) && ts.isIdentifier(node.expression) && ["t", "tn", "tx", "said"].includes(node.expression.text)) {
       const plural = node.expression.text === "tn", text = node.arguments[plural ? 1 : 0];
       if (text && ts.isStringLiteralLike(text)) keys.push({ text: text.text, plural, where: `${name}:${file.getLineAndCharacterOfPosition(node.getStart()).line + 1}` });
     }

@@ -58,7 +58,7 @@ class RunStore:
         self._transaction = sessionmaker(engine, expire_on_commit=False).begin
 
     def add(self, wanted: NewRun, *, approved: bool) -> tuple[RunData, bool]:
-        """Queue a run, unless one is there by the same key of theirs; the run, and whether it is a new one."""
+        """Queue a run, unless theirs of the same key is there; the run, and whether it is a new one."""
         own_key = _own_key(wanted.requested_by, wanted.key) if wanted.key else None
         row = RunRow(
             key=own_key,

@@ -68,7 +68,7 @@ function ServiceState(): JSX.Element {
               [t("stop post"), found.stop_url ? <code>{found.stop_url}</code> : <span class="bad">{t("not available")}</span>],
             ]}
           </Facts>
-          {apart.map((one) => <p key={one.file} class="bad">{tx("{name} is kept apart: {why}", { name: `${kindInWords(one.kind)} ${one.name}`, why: <English>{`${one.why}. ${one.fix}`}</English> })}</p>)}
+          {apart.map((one) => <p key={one.file} class="bad">{tx("{name} is kept apart: {why}", { name: `${kindInWords(one.kind)} ${one.name}`, why: <><English>{one.why}</English>{". "}<English>{one.fix}</English></> })}</p>)}
         </>
       )}
     </Loaded>
