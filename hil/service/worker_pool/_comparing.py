@@ -27,7 +27,7 @@ def comparison(first: list[str], other: list[str]) -> dict[str, Any]:
     """
     one, two = _run(*first), _run(*other)
     try:
-        found = compare([one, two], other_plans=True)
+        found = compare([one, two])
     except BadInputError as error:
         raise _by_name(error, one, two) from None
     all_differences = differences(one, two)

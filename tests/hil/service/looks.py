@@ -43,10 +43,12 @@ _RAW = """() => {
   const raw = (text) => /\\{\\w+\\}|<\\/?\\w+>/.test(text), found = [];
   const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   for (let one = texts.nextNode(); one; one = texts.nextNode()) {
-    if (raw(one.data) && !one.parentElement.closest("script, style, textarea, pre, code")) found.push(one.data);
+    const written = one.parentElement.closest("script, style, textarea, pre, code");
+    if (raw(one.data) && !written) found.push(one.data);
   }
-  for (const one of document.querySelectorAll("[title], [aria-label], [alt], [placeholder], [data-label]")) {
-    for (const { name, value } of one.attributes) if (name !== "value" && raw(value)) found.push(`${name}: ${value}`);
+  for (const name of ["title", "aria-label", "alt", "placeholder"]) {
+    const all = [...document.querySelectorAll(`[${name}]`)].map((one) => one.getAttribute(name));
+    found.push(...all.filter(raw).map((value) => `${name}: ${value}`));
   }
   return found;
 }"""
