@@ -69,6 +69,8 @@ def test_the_browsers_language_is_taken_and_another_is_chosen_in_the_settings(
     expect(heading(page, "設定")).to_be_visible()
     page.reload()
     expect(page.locator("html")).to_have_attribute("lang", "ja")
+    fonts = page.evaluate("getComputedStyle(document.body).fontFamily")  # of macOS, Windows and Linux
+    assert all(name in fonts for name in ("Hiragino Sans", "Yu Gothic", "Noto Sans CJK JP"))
     choice(page, "言語").select_option("")
     expect(heading(page, "Einstellungen")).to_be_visible()
 
