@@ -43,7 +43,7 @@ _RAW = """() => {
   const raw = (text) => /\\{\\w+\\}|<\\/?\\w+>/.test(text), found = [];
   const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   for (let one = texts.nextNode(); one; one = texts.nextNode()) {
-    const written = one.parentElement.closest("script, style, textarea, pre, code");
+    const written = one.parentElement.closest("script, style, textarea, pre, code, .note");
     if (raw(one.data) && !written) found.push(one.data);
   }
   for (const name of ["title", "aria-label", "alt", "placeholder"]) {

@@ -24,7 +24,7 @@ const MOST = 6;
 
 export function Compare(): JSX.Element {
   const [query, setQuery] = useQuery();
-  const runs = (query.get("runs") ?? "").split(",").map(Number).filter((one) => Number.isInteger(one) && one > 0).slice(0, MOST);
+  const chosen = (query.get("runs") ?? "").split(",").map(Number).filter((one) => Number.isInteger(one) && one > 0), runs = chosen.slice(0, MOST);
   const set = (changed: number[]) => {
     const next = new URLSearchParams(query);
     next.set("runs", changed.join(","));
@@ -40,6 +40,7 @@ export function Compare(): JSX.Element {
     <>
       <Heading>{t("Compare runs")}</Heading>
       <Choose runs={runs} onChange={set} />
+      {chosen.length > MOST ? <p class="bad" role="status">{t("{count} runs are chosen; the first {most} are compared.", { count: chosen.length, most: MOST })}</p> : null}
       {runs.length ? <ChooseRecordings chosen={beside} runs={runs.length} onChange={setBeside} /> : null}
       {runs.length >= 2 || (runs.length && beside.length) ? <Compared key={runs.join()} runs={runs} beside={beside} query={query} setQuery={setQuery} /> : <p class="quiet">{tx("Choose two runs or more, of one plan or of its copies; in the <a>table of runs</a> they can be ticked.", { a: linkTo(to.list("runs")) })}</p>}
     </>

@@ -60,7 +60,7 @@ function Found({ run, bench }: { run: Run; bench: Bench | null }): JSX.Element {
       ) : isLive ? <p class="quiet">{t("Nothing has been measured yet.")}</p> : recorded ? <Loaded of={view} what={t("the recording")}>{() => null}</Loaded> : null}
       {isLive || criteria.length ? <Section title={t("Criteria")} label="criteria"><Criteria of={criteria} onSegment={(segment) => { const range = view.data && rangeOfSegment(view.data, segment); if (range) look(range); }} /></Section> : null}
       {view.data ? <Happenings view={view.data} /> : null}
-      <Notes run={run.id} />
+      <Notes key="notes" run={run.id} />
       {isOver ? <Downloads run={run} /> : null}
       {view.data?.evidence ? <Evidence of={view.data.evidence} /> : null}
     </>
