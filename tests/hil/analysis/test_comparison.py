@@ -1,4 +1,4 @@
-"""Runs of one plan side by side: criteria, distances, and what differs in what was given."""
+"""Runs side by side: criteria, distances, and what differs in what was given."""
 
 import dataclasses
 import re

@@ -80,6 +80,7 @@ def test_a_relative_limit_differs_from_run_to_run_and_counts_with_its_own() -> N
     assert (best.run, best.margin, among) == (2, pytest.approx(0.4), 2)
 
 
+@pytest.mark.slow
 def test_another_process_finds_it_in_what_the_database_has_of_the_runs(engine: Engine) -> None:
     """The service's loop would stand still meanwhile."""
     runs = RunStore(engine)

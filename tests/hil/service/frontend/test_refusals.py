@@ -116,6 +116,7 @@ def _unknown(texts: list[str]) -> list[str]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not _NODE.is_file(), reason="there is no node: make page")
 def test_every_refusal_that_the_page_can_show_has_words() -> None:
     found = _every_refusal()
