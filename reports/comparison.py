@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from hil.analysis.comparison import Comparison, CriterionRow, ResponseRow, differences
+from hil.analysis.comparison import Comparison, CriterionRow, ResponseRow, differences, plan_differences
 from hil.core.result import Segment
 from reports import labels
 from reports.labels import channel_label, criterion_title
@@ -14,6 +14,7 @@ from reports.overlay_figures import overlay
 from reports.parts import Page, Part, Table, page_html, page_pdf
 
 _ROWS = 12  # of the first screen
+_SAID = 4  # differences of a plan; the report's tables have all
 _MOST_INPUTS, _LONGEST_VALUE = 40, 60
 _MARKS = {"fail": " ✗", "undecided": " ?", "error": " !", "not_judged": " –"}
 
@@ -41,6 +42,17 @@ def lead(found: Comparison) -> str:
     return f"Mean distance of the criteria from {first.name}: {', '.join(lines)}."
 
 
+def plans_apart(found: Comparison) -> tuple[str, ...]:
+    """What each further run's plan does or demands otherwise than the first one's, a line each."""
+    lines = []
+    for run in found.runs[1:]:
+        apart = plan_differences(found.runs[0], run)
+        if apart:
+            more = f"; and {len(apart) - _SAID} more" if len(apart) > _SAID else ""
+            lines.append(f"The plan of {run.name} differs: {'; '.join(map(str, apart[:_SAID]))}{more}.")
+    return tuple(lines)
+
+
 def value_text(row: CriterionRow, run: int) -> str:
     """Value of a criterion in a run, how far it is from the first run's, and a mark where it failed."""
     value, relative = row.values[run], row.relative[run]
@@ -51,14 +63,14 @@ def value_text(row: CriterionRow, run: int) -> str:
 
 
 def _page(found: Comparison) -> Page:
-    plan = found.runs[0].result.plan
+    plans = dict.fromkeys(run.result.plan for run in found.runs)
     return Page(
-        kind="Runs of one plan side by side",
-        title=f"{plan}: {len(found.runs)} runs",
+        kind="Runs side by side",
+        title=f"{', '.join(plans)}: {len(found.runs)} runs",
         headline=f"Reference run: {found.runs[0].name}",
         tone="quiet",
         lead=lead(found),
-        notes=found.notes,
+        notes=(*plans_apart(found), *found.notes),
         parts=tuple(_parts(found)),
         first=_first(found),
     )

@@ -19,6 +19,7 @@ from hil.agent._service import AwayError, TheService
 from hil.api_schemas.agent import AgentOrders, AgentReport, RunEnding, TakenRun
 from hil.client import RefusedError
 from hil.core.errors import BadInputError, BenchError, HilError
+from hil.core.errors.wording import shortened
 from hil.engine import StopRequest
 from hil.execution.benches import benches_of
 from hil.execution.data_folder import alone_in, name_in
@@ -262,5 +263,8 @@ async def _written(write: Callable[[], None]) -> None:
 def _ending(end: RunEnd) -> RunEnding:
     code = None if end.exit_code is None else min(max(end.exit_code, 0), 255)
     return RunEnding(
-        state=end.state, exit_code=code, reason=end.reason[:_LONGEST_REASON], dut=end.dut[:_LONGEST_DUT]
+        state=end.state,
+        exit_code=code,
+        reason=shortened(end.reason, _LONGEST_REASON),
+        dut=shortened(end.dut, _LONGEST_DUT),
     )

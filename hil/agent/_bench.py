@@ -15,7 +15,7 @@ from hil.api_schemas.agent import AgentBench, AgentsForecast, Order, PlanSent
 from hil.api_schemas.api import ForecastData, Problem
 from hil.client import RefusedError
 from hil.core.errors import BadInputError, BenchError, HilError
-from hil.core.errors.wording import printable
+from hil.core.errors.wording import printable, shortened
 from hil.core.files import write_atomically
 from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.execution.benches import Bench
@@ -119,7 +119,7 @@ class DrivenBench:
 
 
 def _short(text: str) -> str:
-    return text[:_LONGEST]
+    return shortened(text, _LONGEST)
 
 
 class Forecasting:

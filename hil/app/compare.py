@@ -1,4 +1,4 @@
-"""The same plan on several runs, side by side."""
+"""Several runs side by side, of one plan or of its changed copies."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from hil.analysis.comparison import ComparedRun, Comparison, compare, names_by_variables
+from hil.analysis.comparison import ComparedRun, Comparison, compare, differences, names_by_variables
 from hil.app.feedback import LOGGED, Feedback, Show, warn_of_damage
 from hil.app.requests import CompareRequest
 from hil.app.result_file import Outcome, json_file
@@ -24,7 +24,7 @@ def compare_runs(request: CompareRequest, feedback: Feedback = LOGGED) -> Outcom
     """Compare, and write summary and report.
 
     Raises:
-        BadInputError: a run cannot be read, or they are of different plans.
+        BadInputError: a run cannot be read, or they have no channel in common.
     """
     paths = [path / RECORDING if path.is_dir() else path for path in request.runs]
     for path in paths:
@@ -90,6 +90,7 @@ def _summary(found: Comparison, runs: list[Path]) -> dict[str, Any]:
             {
                 "name": run.name,
                 "path": str(path),
+                "plan": run.result.plan,
                 "bench": run.result.bench,
                 "variables": {one.name: one.value for one in run.result.variables},
                 "started_at": run.recording.metadata.get("run", {}).get("started_at", ""),
@@ -111,6 +112,11 @@ def _summary(found: Comparison, runs: list[Path]) -> dict[str, Any]:
         "responses": [
             {"segment": row.segment, "channel": row.channel, "gaps": row.gaps, "ripples": row.ripples}
             for row in found.responses
+        ],
+        "differences": [
+            {"run": run.name, **vars(one)}
+            for run in found.runs[1:]
+            for one in differences(found.runs[0], run)
         ],
         "notes": found.notes,
         "files": [SUMMARY, HTML, PDF],

@@ -16,7 +16,7 @@ TOPICS: dict[str, dict[str, str]] = {
     "Runs": {
         "run": "Run a test plan on a bench and write its report.",
         "check": "Validate a plan; predict its duration, peaks and criteria.",
-        "compare": "Compare runs of one plan side by side.",
+        "compare": "Compare runs of a plan or of its copies side by side.",
         "report": "Renew a report from its recording.",
         "export": "Write a recording for other tools, or a model as an FMU.",
         "replay": "Decode CAN logs of other tools to a recording and report on it.",

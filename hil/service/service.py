@@ -144,18 +144,8 @@ class Service:
         self.notes = NoteStore(engine)
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
         self.people, self.sign_in = PersonStore(engine), sign_in
-        given = GivenStore(engine)
-        models = Uploads(given, "model", folder / "given/models", ".toml")
-        controllers = Uploads(given, "controller", folder / "given/plans", ".toml")
-        self.pictures = Pictures(given, folder / "given/plans")
-        self.plans = Plans(
-            Uploads(given, "plan", folder / "given/plans", ".yaml"), controllers, self.pictures
-        )
-        self.bench_files = bench_catalogue(Uploads(given, "bench", folder / "given/benches", ".toml"))
+        self._open_given(GivenStore(engine))
         self.versions = VersionStore(engine)
-        self.models, self.controllers = model_catalogue(models), controller_catalogue(controllers)
-        earlier = LegacyImport(folder, given, self.log, self.plans, self.controllers, self.models)
-        self.kept_apart = earlier.take_in()
         self.forecasts = Forecasts()
         results, elsewhere = ResultStore(engine, held.service, held.place), folder / "elsewhere"
         studies = SharedResults(results, "study", StudyData, archive, elsewhere / "studies")
@@ -192,6 +182,20 @@ class Service:
         self.audit_problem = ""
         self.known_agents: dict[str, Me] = {}  # by secret, for while the database is away
         self.deferred_audit = DeferredAudit(self.log)
+
+    def _open_given(self, given: GivenStore) -> None:
+        """Plans, controllers, models, bench files and pictures that people gave."""
+        folder = self.folder
+        models = Uploads(given, "model", folder / "given/models", ".toml")
+        controllers = Uploads(given, "controller", folder / "given/plans", ".toml")
+        self.pictures = Pictures(given, folder / "given/plans")
+        self.plans = Plans(
+            Uploads(given, "plan", folder / "given/plans", ".yaml"), controllers, self.pictures
+        )
+        self.bench_files = bench_catalogue(Uploads(given, "bench", folder / "given/benches", ".toml"))
+        self.models, self.controllers = model_catalogue(models), controller_catalogue(controllers)
+        earlier = LegacyImport(folder, given, self.log, self.plans, self.controllers, self.models)
+        self.kept_apart = earlier.take_in()
 
     async def _share(self) -> str:
         problems = await self.studies.share(), await self.campaigns.share(), await self.recordings.share()

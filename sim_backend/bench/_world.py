@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.can.dbc import Names, read_dbc
+from hil.core.can.dbc import read_dbc
 from hil.core.can.frames import FrameBlock, longest_frame_s
 from hil.core.channels import TICK_S
 from hil.core.errors import BadInputError
@@ -18,7 +17,8 @@ from hil.plant.closed_loop import tick as T
 from hil.plant.controller import memory as memory
 from sim_backend.bench._outgoing import DYNO_BUS, RAM_BUS, RMCU_BUS, Inbox, Outgoing, Sent
 from sim_backend.bench._settings import SENSED_CHANNELS, Fault, SensorFault, SimulationSettings, Tamper
-from sim_backend.rcs import DynoNode, read_node
+from sim_backend.bench._vehicle_model import preset_vehicle, set_vehicle, show_measured, take_vehicle_model
+from sim_backend.rcs import DynoNode
 from sim_backend.rmcu import LARGEST_TORQUE_NM, NEEDED, RmcuMemory, RmcuNode, XcpSlave
 
 _NOISE_BLOCK = 1000
@@ -26,20 +26,9 @@ _LARGEST_BATCH = 4096
 _NODES_EVERY = 10  # samples between looks at heartbeats: no more are computed at once
 _NO_SAMPLES, _NO_REQUESTS = np.zeros(0, np.int64), np.zeros(0, np.uint64)
 _HEARTBEATS = range(0x701, 0x780)
-_VEHICLE_MODEL = {"inertia_kg_m2": 1, "rolling_nm": 2, "aero_nms2_rad2": 3, "slip": 4}  # subindex of 0x2000
 _EMCY_SHORT_CIRCUIT = 0x2320  # CiA 402: short circuit or earth leakage at the output
 _RUNAWAY_RAD_S = 200.0
 _BOOT_TICKS = 300
-
-
-def check_device_files(dbc: Path, eds: Path, names: Names | None = None) -> None:
-    """Refuse a DBC, which calls things by `names`, or an EDS that no simulated bench can be made of.
-
-    Raises:
-        BadInputError: file and what it lacks.
-    """
-    read_dbc(dbc, NEEDED, names)
-    read_node(eds, 1)
 
 
 class SimulatedBench:
@@ -180,10 +169,7 @@ class SimulatedBench:
             )
             for node in (s.rear_left, s.rear_right, *s.idle)
         ]
-        vehicle = (*self._plant.vehicle, 0.0, s.wheel_radius_m, 0.0)
-        for node in self._dynos:
-            for subindex, value in enumerate(vehicle, 1):
-                node.preset(0x2000, subindex, value)
+        preset_vehicle(self._plant, self._dynos, s.wheel_radius_m)
         request_s = longest_frame_s(request.length, s.rmcu_bit_rate)
         self._outgoing.nodes_are(self._rmcu, self._dynos, request_s)
         m = self._rmcu.memory
@@ -298,13 +284,13 @@ class SimulatedBench:
     def _to_dynos(self, sent: Sent, time_s: float) -> None:
         heartbeat = sent.frame_id in _HEARTBEATS  # it changes nothing of what is sent
         if not heartbeat:
-            self._show_measured()
+            show_measured(self._newest_row(), self._dynos)
             self._emit()  # what the nodes send may change from here on
         data = sent.data
         for node in self._dynos:
             node.receive(sent.frame_id, data, time_s)
         if not heartbeat:
-            self._take_vehicle_model()
+            take_vehicle_model(self._plant, self._dynos[0])
             self._outgoing.dynos_changed()
 
     def _serve_memory(self, command: bytes, time_s: float) -> None:
@@ -332,17 +318,6 @@ class SimulatedBench:
     def _newest_row(self) -> npt.NDArray[np.float64]:
         new = self._samples - self._first_row
         return self._rows[new - 1] if new else self._last_row
-
-    def _show_measured(self) -> None:
-        """The newest sample, to whoever reads it by SDO."""
-        row = self._newest_row()
-        for side, node in enumerate(self._dynos[:2]):
-            node.measure(
-                row[T.WHEEL_LEFT + side],
-                row[T.SHAFT_LEFT + side],
-                row[T.VEHICLE_SPEED],
-                row[T.LOAD_LEFT + side],
-            )
 
     def _is_deaf(self, bus: str) -> bool:
         if not self.faults:
@@ -394,29 +369,12 @@ class SimulatedBench:
     def set_vehicle(self, values: Mapping[str, float]) -> None:
         """The dyno controller's vehicle model has other values from now on: its panel has set them."""
         self._compute()
-        friction = {name: value for name, value in values.items() if name not in _VEHICLE_MODEL}
-        for name in values.keys() - friction.keys():
-            for node in self._dynos:
-                node.preset(0x2000, _VEHICLE_MODEL[name], values[name])
-        self._take_vehicle_model()
-        self._plant.set_vehicle(**friction)
+        set_vehicle(self._plant, self._dynos, values)
 
     @property
     def has_friction(self) -> bool:
         """Whether the road's friction bounds what the tyres pass."""
         return self._plant.has_friction
-
-    def _take_vehicle_model(self) -> None:
-        left = self._dynos[0]
-        inertia, rolling, aero, slip, radius, initial = (left.number(0x2000, i) for i in range(1, 7))
-        self._plant.set_vehicle(
-            inertia_kg_m2=inertia,
-            rolling_nm=rolling,
-            aero_nms2_rad2=aero,
-            slip=slip,
-            wheel_radius_m=radius,
-            initial_speed_m_s=initial,
-        )
 
     # --- what is sent ---
 

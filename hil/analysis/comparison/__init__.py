@@ -1,4 +1,4 @@
-"""Runs of one plan side by side: criteria, and how far responses are apart."""
+"""Runs side by side: criteria, how far responses are apart, and what each was given otherwise."""
 
 from hil.analysis.comparison._comparison import (
     Comparison,
@@ -14,7 +14,7 @@ from hil.analysis.comparison._runs import (
     controllers_that_differ,
     differences,
     names_by_variables,
-    refuse_other_plans,
+    plan_differences,
 )
 
 __all__ = [
@@ -29,5 +29,5 @@ __all__ = [
     "difference",
     "differences",
     "names_by_variables",
-    "refuse_other_plans",
+    "plan_differences",
 ]

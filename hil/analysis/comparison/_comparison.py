@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.comparison._runs import ComparedRun, controllers_that_differ, refuse_other_plans
+from hil.analysis.comparison._runs import ComparedRun, controllers_that_differ
 from hil.core.channels import TIME
 from hil.core.errors import BadInputError
 from hil.core.result import CriterionResult, CriterionVerdict, Segment
@@ -66,7 +66,7 @@ class ResponseRow:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Runs of one plan; everything is reported against the first."""
+    """Runs of one plan, or of several; everything is reported against the first."""
 
     runs: tuple[ComparedRun, ...]
     criteria: tuple[CriterionRow, ...]
@@ -88,20 +88,17 @@ class Comparison:
         )
 
 
-def compare(runs: Sequence[ComparedRun], *, other_plans: bool = False) -> Comparison:
-    """Lay runs side by side: of one plan, or with `other_plans` of plans that have anything in common.
+def compare(runs: Sequence[ComparedRun]) -> Comparison:
+    """Lay runs side by side: of one plan, or of plans that have anything in common.
 
     Segments are matched by name and kind, criteria by id and unit.
 
     Raises:
-        BadInputError: fewer than two runs, different plans, or no common channel.
+        BadInputError: fewer than two runs, or no common channel.
     """
     if len(runs) < 2:
         raise BadInputError("one run cannot be compared", fix="name at least two run directories")
-    if other_plans:
-        _refuse_without_common_channel(runs)
-    else:
-        refuse_other_plans(runs)
+    _refuse_without_common_channel(runs)
     notes = []
     changed = controllers_that_differ(runs)
     if changed:

@@ -1,4 +1,4 @@
-"""Runs that are compared: whether they are of one plan, and which of their inputs differ."""
+"""Runs that are compared, and which of their inputs differ."""
 
 from __future__ import annotations
 
@@ -17,8 +17,6 @@ from hil.core.result import RunResult
 
 PLAN = "plan.yaml"
 CONTROLLERS = "controller/"
-#: What makes two plans the same: what is done and what is judged, not what it is called.
-_PARTS = ("steps", "finally", "criteria")
 _STEP, _FILE = "set_controller", "file"
 
 
@@ -41,27 +39,6 @@ def names_by_variables(folders: Sequence[str], results: Sequence[RunResult]) -> 
     differing = [name for name in every if len({run.get(name) for run in values}) > 1]
     names = [", ".join(run[name] for name in differing if name in run) for run in values]
     return names if all(names) and len(set(names)) == len(names) else list(folders)
-
-
-def refuse_other_plans(runs: Sequence[ComparedRun]) -> None:
-    """Refuse runs of different plans: their criteria and segments are not of one kind.
-
-    Raises:
-        BadInputError: names both recordings, and whether steps or criteria differ.
-    """
-    first = _parts(runs[0].recording)
-    for run in runs[1:]:
-        other = _parts(run.recording)
-        different = [part for part in _PARTS if other[part] != first[part]]
-        if different:
-            own, of_first = run.result.plan, runs[0].result.plan
-            names = f"'{own}', not '{of_first}': " if own != of_first else f"another version of '{own}': "
-            raise BadInputError(
-                f"ran a different plan from {runs[0].recording.source}, {names}"
-                f"{' and '.join(different)} differ",
-                where=str(run.recording.source),
-                fix="compare runs of one plan",
-            )
 
 
 def controllers_that_differ(runs: Sequence[ComparedRun]) -> tuple[str, ...]:
@@ -101,23 +78,6 @@ def _loaded(value: object) -> Iterator[str]:
             yield from _loaded(one)
 
 
-def _without_files(value: object) -> object:
-    """Steps whichever controllers they load: those are distinguished by what is in them."""
-    if isinstance(value, dict):
-        return {
-            key: {**one, _FILE: ""}
-            if key == _STEP and isinstance(one, dict) and _FILE in one
-            else _without_files(one)
-            for key, one in value.items()
-        }
-    return [_without_files(one) for one in value] if isinstance(value, list) else value
-
-
-def _parts(recording: Recording) -> dict[str, Any]:
-    content = _plan_of(recording)
-    return {part: _without_files(content.get(part)) for part in _PARTS}
-
-
 def _plan_of(recording: Recording) -> dict[str, Any]:
     try:
         content = yaml.safe_load(recording.attachments.get(PLAN, b"").decode())
@@ -138,6 +98,8 @@ _NO_VALUE = PlanValue(_NOTHING, shown=_NOTHING)
 #: Says where a model or a controller came from, not what it is.
 _NOT_COMPARED = ("meta", "format")
 _LONGEST = 200
+#: Of a plan: called otherwise, not otherwise done.
+_NAMES = ("name", "title", "description")
 
 
 @dataclass(frozen=True)
@@ -153,6 +115,15 @@ class Difference:
     other: str
     unit: str = ""
 
+    def __str__(self) -> str:
+        """'segment s (step): to_nm 200 N m instead of 180 N m'."""
+        if self.first == _NOTHING:
+            return f"{self.name} is only in it"
+        if self.other == _NOTHING:
+            return f"{self.name} is not in it"
+        values = (f"{value} {self.unit}".rstrip() for value in (self.other, self.first))
+        return f"{self.name} {' instead of '.join(values)}"
+
 
 def differences(first: ComparedRun, other: ComparedRun) -> tuple[Difference, ...]:
     """Every value that differs in what the two were given, controllers first."""
@@ -163,6 +134,11 @@ def differences(first: ComparedRun, other: ComparedRun) -> tuple[Difference, ...
 
 
 _FILES: dict[Kind, str] = {"model": "model.toml", "bench": "bench.toml"}
+
+
+def plan_differences(first: ComparedRun, other: ComparedRun) -> tuple[Difference, ...]:
+    """What the other's plan does or demands otherwise, whatever it is called."""
+    return tuple(one for one in _of_plans(first, other) if one.name not in _NAMES)
 
 
 def _of_plans(first: ComparedRun, other: ComparedRun) -> Iterator[Difference]:

@@ -1,4 +1,4 @@
-"""`hil compare`: the same plan on several runs, side by side."""
+"""`hil compare`: several runs side by side, of one plan or of its changed copies."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from hil.app.requests import CompareRequest
 from hil.cli.inputs import request_of
 from hil.cli.options.runs import Compare
 from hil.cli.output import TERMINAL, console, plain_table, print_json
-from reports.comparison import lead, value_text
+from reports.comparison import lead, plans_apart, value_text
 
 
 def execute(options: Compare) -> int:
@@ -40,6 +40,8 @@ def _print(found: Comparison, page: Path) -> None:
             where = run.recording.source.parent
             out.print(f"{where}: {values}", highlight=False, markup=False, soft_wrap=True)
     out.print(f"\n{lead(found)}", highlight=False, markup=False)
+    for line in plans_apart(found):
+        out.print(line, highlight=False, markup=False, soft_wrap=True)
     for note in found.notes:
         out.print(f"note: {note}", highlight=False, markup=False)
     out.print(f"report: {page}", highlight=False, markup=False, soft_wrap=True)

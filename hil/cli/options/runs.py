@@ -126,7 +126,7 @@ class Check:
 
 @dataclass(frozen=True, kw_only=True)
 class Compare:
-    """Compare runs of one plan: criteria, step responses overlaid, spectra.
+    """Compare runs of a plan or of its copies: criteria, step responses overlaid, spectra.
 
     Writes comparison.json, report.html and report.pdf, all or none. The first run is the reference. To see
     where an augmented model improves, give the measured run first, then the base model, then the augmented

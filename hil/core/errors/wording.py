@@ -96,7 +96,12 @@ def printable(text: object, longest: int = LONGEST) -> str:
     A file can hold escape sequences that would move a terminal's cursor or colour its text.
     """
     shown = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in str(text))
-    return shown if len(shown) <= longest else f"{shown[: longest - 1]}…"
+    return shortened(shown, longest)
+
+
+def shortened(text: str, longest: int) -> str:
+    """`text` where only `longest` characters have room: what is cut off leaves "…" in its place."""
+    return text if len(text) <= longest else f"{text[: longest - 1]}…"
 
 
 def refuse_long(text: str, where: str, most: int = LONGEST_NAME) -> None:

@@ -11,7 +11,6 @@ from hil.api_schemas.comparison import BestRunData, ChannelName, ComparisonData,
 from hil.engine import RECORDING
 from hil.service.api._access import TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
-from hil.service.best_run import best_run
 from hil.service.service import Service
 
 router = APIRouter(prefix="/comparisons", tags=["runs"])
@@ -36,13 +35,12 @@ async def find_best_run(service: TheService, me: Viewer, run: Annotated[RunId, Q
     """Of the runs that passed the same criteria with the same limits, the one farthest from its limits."""
     del me
     of = _over(service, run)
-    passed = service.run_list.with_criteria_of(of.id)
-    wanted = passed[of.id] if of.verdict == "pass" else passed.pop(of.id)
-    best, among = best_run(wanted, passed)
-    if best is None:
-        return BestRunData(run=None, among=among)
-    found = service.runs.get(best.run)
-    return BestRunData(run=found, margin=best.margin, criterion=best.criterion, among=among)
+    criteria = service.run_list.criteria_beside(of.id)
+    found = await service.worker_pool.ask(
+        "best_run", run=of.id, passed=of.verdict == "pass", criteria=criteria
+    )
+    best = found["run"]
+    return BestRunData(**{**found, "run": None if best is None else service.runs.get(best)})
 
 
 @router.get("/traces", name="compare_traces")

@@ -8,6 +8,7 @@ from fastapi import APIRouter, Query
 
 from hil.api_schemas.api import BenchName
 from hil.api_schemas.team import HandoverData, HandoverWanted
+from hil.core.errors.wording import shortened
 from hil.service.api._access import Operator, TheService, Viewer
 from hil.service.api._benches import known
 
@@ -35,7 +36,7 @@ async def add_handover(
     """Add a hand-over note; it stays as it is."""
     found = service.handovers.add(known(service, bench), me.name, wanted)
     service.log.add(
-        me.name, me.role, "hand-over", bench, f"{wanted.day}, {wanted.shift}: {wanted.text[:200]}"
+        me.name, me.role, "hand-over", bench, f"{wanted.day}, {wanted.shift}: {shortened(wanted.text, 200)}"
     )
     service.changed(bench)
     return found

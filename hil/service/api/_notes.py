@@ -6,6 +6,7 @@ from fastapi import APIRouter
 
 from hil.api_schemas.api import LADDER, RunId
 from hil.api_schemas.notes import NoteData, NoteWanted, RunNotes, Tag
+from hil.core.errors.wording import shortened
 from hil.service.api._access import Operator, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
 from hil.service.api._runs import there
@@ -26,7 +27,7 @@ async def add_run_note(run: RunId, wanted: NoteWanted, service: TheService, me: 
     """Add a note to a run, under way or over."""
     there(service, run)
     found = service.notes.add(run, me.name, wanted.text)
-    service.log.add(me.name, me.role, "note added", f"run {run}", wanted.text[:200])
+    service.log.add(me.name, me.role, "note added", f"run {run}", shortened(wanted.text, 200))
     return found
 
 
@@ -39,7 +40,9 @@ async def remove_run_note(run: RunId, note: RunId, service: TheService, me: Oper
     if found.who != me.name and LADDER.index(me.role) < LADDER.index("engineer"):
         raise RefusedError(403, f"the note is {found.who}'s", where=f"run {run}", fix="ask an engineer")
     service.notes.remove(note)
-    service.log.add(me.name, me.role, "note removed", f"run {run}", f"{found.who}: {found.text[:200]}")
+    service.log.add(
+        me.name, me.role, "note removed", f"run {run}", f"{found.who}: {shortened(found.text, 200)}"
+    )
 
 
 @router.put("/tags/{tag}", name="tag_run", status_code=204)

@@ -16,6 +16,7 @@ from starlette.requests import Request
 from starlette.routing import Match, Route
 from starlette.types import Scope
 
+from hil.core.errors.wording import shortened
 from hil.service.api._problems import RefusedError
 from reports.style import css_variables
 
@@ -50,7 +51,9 @@ def add_to(app: FastAPI, built: Traversable | None = None) -> None:
     async def part(request: Request) -> Response:
         name = request.path_params["name"]
         if name not in parts:
-            raise RefusedError(404, f"there is no part '{name[:100]}' of the page", fix="load the page again")
+            raise RefusedError(
+                404, f"there is no part '{shortened(name, 100)}' of the page", fix="load the page again"
+            )
         return Response(parts[name], media_type=_kind(name), headers=_FOR_GOOD)
 
     async def picture(request: Request) -> Response:

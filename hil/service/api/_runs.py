@@ -76,7 +76,7 @@ async def queue_run(wanted: RunWanted, service: TheService, me: Operator) -> Run
         hazard=hazard,
         confirmed_by=wanted.confirmed_by,
         accept_expired=wanted.accept_expired,
-        key=f"{me.name}:{wanted.key}"[:100] if wanted.key else "",
+        key=wanted.key,
     )
     run, is_new = service.runs.add(new, approved=not hazard)
     if is_new:

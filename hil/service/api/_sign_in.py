@@ -14,6 +14,7 @@ from fastapi.responses import RedirectResponse
 
 from hil.api_schemas.api import RunId
 from hil.api_schemas.people import PersonData
+from hil.core.errors.wording import shortened
 from hil.service.api._access import Admin, TheService
 from hil.service.api._problems import RefusedError, missing
 from hil.service.service import Service
@@ -89,9 +90,8 @@ def _opened(service: Service, found: SignIn, signed_in: SignedIn) -> RedirectRes
     if signed_in.role is None:
         service.people.refuse(signed_in.issuer, signed_in.subject)
         service.owners.changed()
-        who = f"{signed_in.name[:40]} ({signed_in.subject})"[
-            :100
-        ]  # the name may be that of somebody else here
+        # The name may be that of somebody else here.
+        who = shortened(f"{shortened(signed_in.name, 40)} ({signed_in.subject})", 100)
         service.log.add(who, "", "sign in refused", "page", f"{subject}: no group has a role")
         raise SignInError("no_role", f"{subject} has no group with a role")
     hours = found.settings.session_hours

@@ -13,6 +13,7 @@ from urllib.parse import urlsplit
 from fsspec.core import url_to_fs
 
 from hil.core.errors import BadInputError, BenchError
+from hil.core.errors.wording import shortened
 from hil.core.files import read_bytes, replacing, sha256_of
 
 T = TypeVar("T")
@@ -72,7 +73,7 @@ class Archive:
             self._files, root = url_to_fs(url, **(_S3 if self._s3 else {}))
         except (ImportError, ValueError) as error:
             raise BadInputError(
-                f"no store can be opened by this URL: {str(error)[:_LONGEST]}",
+                f"no store can be opened by this URL: {shortened(str(error), _LONGEST)}",
                 where="--store",
                 fix="s3://bucket/prefix (pip install 'eaxle-hil[s3]'), or a folder",
             ) from error
@@ -165,7 +166,7 @@ class Archive:
         try:
             return ask()
         except Exception as error:  # each kind of store has errors of its own
-            text = (str(error).strip() or type(error).__name__).splitlines()[0][:_LONGEST]
+            text = shortened((str(error).strip() or type(error).__name__).splitlines()[0], _LONGEST)
             raise ArchiveAwayError(
                 f"the store cannot be reached: {text}", where=self._where(name), fix=_LATER
             ) from error

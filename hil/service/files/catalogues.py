@@ -13,6 +13,7 @@ from hil.api_schemas.design import ControllerData, ModelData
 from hil.api_schemas.file_check import BenchFileData
 from hil.core.controller import Controller, controller_from_toml
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import shortened
 from hil.core.files import read_text
 from hil.core.files.toml_file import parse_toml
 from hil.core.model import Model, load_model, model_from_dict
@@ -151,7 +152,7 @@ def _model(text: str, where: str) -> Model:
 
 def _bench(text: str, where: str) -> BenchSummary:
     data = parse_toml(text, where)
-    return BenchSummary(str(data.get("title", ""))[:200], "simulation" in data)
+    return BenchSummary(shortened(str(data.get("title", "")), 200), "simulation" in data)
 
 
 def _shipped_models() -> dict[str, Path]:

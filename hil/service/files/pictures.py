@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import shortened
 from hil.core.files import is_file, write_atomically
 from hil.service.files.uploads import NameTakenError
 from hil.service.store import GivenStore, asked_apart
@@ -77,7 +78,7 @@ def refuse_no_picture(name: str, content: bytes) -> None:
     if re.fullmatch(PICTURE, name) is None:
         raise BadInputError(
             "is no name of a picture",
-            where=name[:100],
+            where=shortened(name, 100),
             fix="letters, digits, _ and -, then .png, .jpg or .svg",
         )
     if len(content) > MOST_PICTURE_BYTES:

@@ -13,15 +13,25 @@ export interface Key {
   text: string;
   plural: boolean;
   where: string;
+  unfilled: string[]; // names in braces for which the call gives no value; [] where it gives them by a variable
 }
 
-// The first text of t and tx, the second of tn; texts that are computed are keys somewhere else as they are.
+const namesIn = (text: string): string[] => [...new Set([...text.matchAll(/\{(\w+)\}|<(\w+)>/g)].map(([, value, element]) => value ?? element ?? ""))];
+
+function unfilledBy(call: ts.CallExpression, text: string, kind: string): string[] {
+  const wanted = namesIn(text).filter((name) => !(kind === "tn" && name === "count")), given = call.arguments[kind === "tn" ? 3 : 1];
+  if (kind === "said" || (given && !ts.isObjectLiteralExpression(given)) || given?.properties.some(ts.isSpreadAssignment)) return [];
+  const named = (given?.properties ?? []).map((one) => (one.name && (ts.isIdentifier(one.name) || ts.isStringLiteral(one.name)) ? one.name.text : ""));
+  return wanted.filter((name) => !named.includes(name));
+}
+
+// The first text of t, tx and said, the second of tn; texts that are computed are keys somewhere else as they are.
 export function keysIn(name: string, source: string): Key[] {
   const file = ts.createSourceFile(name, source, ts.ScriptTarget.Latest, true, ts.ScriptKind.TSX), keys: Key[] = [];
   const visit = (node: ts.Node): void => {
-    if (ts.isCallExpression(node) && ts.isIdentifier(node.expression) && ["t", "tn", "tx"].includes(node.expression.text)) {
-      const plural = node.expression.text === "tn", text = node.arguments[plural ? 1 : 0];
-      if (text && ts.isStringLiteralLike(text)) keys.push({ text: text.text, plural, where: `${name}:${file.getLineAndCharacterOfPosition(node.getStart()).line + 1}` });
+    if (ts.isCallExpression(node) && ts.isIdentifier(node.expression) && ["t", "tn", "tx", "said"].includes(node.expression.text)) {
+      const kind = node.expression.text, plural = kind === "tn", text = node.arguments[plural ? 1 : 0];
+      if (text && ts.isStringLiteralLike(text)) keys.push({ text: text.text, plural, where: `${name}:${file.getLineAndCharacterOfPosition(node.getStart()).line + 1}`, unfilled: unfilledBy(node, text.text, kind) });
     }
     ts.forEachChild(node, visit);
   };
@@ -29,9 +39,11 @@ export function keysIn(name: string, source: string): Key[] {
   return keys;
 }
 
-export function allKeys(): Map<string, Key> {
+export const allKeys = (): Map<string, Key> => new Map(allCalls().map((key) => [key.text, key]));
+
+export function allCalls(): Key[] {
   const names = readdirSync(SOURCES, { recursive: true, encoding: "utf8" }).filter((name) => /\.tsx?$/.test(name) && !name.endsWith(".d.ts")).sort();
-  return new Map(names.flatMap((name) => keysIn(name, readFileSync(join(SOURCES, name), "utf8"))).map((key) => [key.text, key]));
+  return names.flatMap((name) => keysIn(name, readFileSync(join(SOURCES, name), "utf8")));
 }
 
 export type Translation = string | Record<string, string>;

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hil.api_schemas.api import Role
+from hil.core.errors.wording import shortened
 from hil.execution.background import apart
 from hil.service.sign_in._settings import SignInSettings
 from hil.service.sign_in._tried import SignInError, TriedOnes
@@ -97,7 +98,7 @@ def _name(claims: Mapping[str, Any], claim: str) -> str:
     for found in (claims.get(claim), claims.get("preferred_username"), claims["sub"]):
         if isinstance(found, str):
             words = "".join(one if one.isprintable() else " " for one in unicodedata.normalize("NFKC", found))
-            name = " ".join(words.split())[:_LONGEST_NAME].strip()
+            name = shortened(" ".join(words.split()), _LONGEST_NAME)
             if name:
                 return name
     return "unnamed"

@@ -17,6 +17,7 @@ from http import HTTPStatus
 from http.cookies import CookieError, SimpleCookie
 
 from hil.core.errors import StopWay
+from hil.core.errors.wording import shortened
 from hil.service.connection_limit import ConnectionLimit, descriptors
 from hil.service.stop_post._messages import Owner
 
@@ -78,7 +79,8 @@ class Answering:
         if method != "POST":
             raise RefusedError(HTTPStatus.METHOD_NOT_ALLOWED, "an emergency stop is a POST")
         if address in self.proxies:
-            address = headers.get("x-forwarded-for", address).rpartition(",")[2].strip()[:64] or address
+            forwarded = headers.get("x-forwarded-for", address).rpartition(",")[2].strip()
+            address = shortened(forwarded, 64) or address
         owner = self._owner(headers)
         by, role = (owner.name, owner.role) if owner is not None else (f"somebody at {address}", "")
         way: StopWay = "page" if "origin" in headers else "api"

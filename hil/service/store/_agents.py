@@ -9,6 +9,7 @@ from sqlalchemy import Engine, delete, select, update
 from sqlalchemy.orm import sessionmaker
 
 from hil.api_schemas.agent import AgentBench
+from hil.core.errors.wording import shortened
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now_there
 from hil.service.store._tables import AgentRow
@@ -57,7 +58,9 @@ class AgentStore:
     def stop(self, bench: str, by: str) -> None:
         """Keep that its agent has to learn of an emergency stop; `by` is '' once it has confirmed that."""
         with self._transaction() as session:
-            session.execute(update(AgentRow).where(AgentRow.bench == bench).values(stop_by=by[:100]))
+            session.execute(
+                update(AgentRow).where(AgentRow.bench == bench).values(stop_by=shortened(by, 100))
+            )
 
     def forget(self, bench: str) -> None:
         """It is no agent's any more."""

@@ -16,6 +16,7 @@ from sqlalchemy import Engine, select, text
 from sqlalchemy.orm import Session, sessionmaker
 
 from hil.api_schemas.api import AuditEntry
+from hil.core.errors.wording import shortened
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now
 from hil.service.store._tables import AuditRow
@@ -53,7 +54,12 @@ class LogStore:
     def add(self, who: str, role: str, action: str, target: str, detail: str = "") -> None:
         """Write what somebody does."""
         row = AuditRow(
-            at=now(), who=who, role=role, action=action, target=target[:200], detail=detail[:_LONGEST_DETAIL]
+            at=now(),
+            who=who,
+            role=role,
+            action=action,
+            target=shortened(target, 200),
+            detail=shortened(detail, _LONGEST_DETAIL),
         )
         with self._transaction() as session:
             _alone(session)

@@ -8,6 +8,7 @@ from sqlalchemy import Engine, and_, delete, exists, or_, select
 from sqlalchemy.orm import sessionmaker
 
 from hil.api_schemas.api import LeaseData
+from hil.core.errors.wording import shortened
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now_there
 from hil.service.store._tables import BenchRow, LeaseRow, RunRow, put
@@ -81,7 +82,12 @@ class BenchStore:
                 RunRow.service.not_in((self.service, "")),
             )
             free = or_(BenchRow.service == self.service, and_(BenchRow.until <= moment, ~others))
-            row = {"bench": bench, "service": self.service, "place": self.place[:300], "until": until}
+            row = {
+                "bench": bench,
+                "service": self.service,
+                "place": shortened(self.place, 300),
+                "until": until,
+            }
             if put(session, BenchRow, row, where=free):
                 return ""
             there = session.scalars(select(BenchRow).where(BenchRow.bench == bench)).one()

@@ -10,6 +10,7 @@ from sqlalchemy import Engine, or_, select, update
 from sqlalchemy.orm import Session, sessionmaker
 
 from hil.api_schemas.upload import GivenKind
+from hil.core.errors.wording import shortened
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now
 from hil.service.store._tables import GivenRow, put
@@ -58,7 +59,7 @@ class GivenStore:
         """
         sha256 = hashlib.sha256(text.encode("utf-8")).hexdigest()
         row: dict[str, object] = {"kind": kind, "name": name, "sha256": sha256, "text": text}
-        row |= {"given_by": by[:100], "given_at": now(), "removed_at": None}
+        row |= {"given_by": shortened(by, 100), "given_at": now(), "removed_at": None}
         free = or_(GivenRow.removed_at.is_not(None), GivenRow.sha256 == instead_of)
         with self._transaction() as session:
             if put(session, GivenRow, row, where=free):

@@ -15,6 +15,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.pool import ConnectionPoolEntry
 
 from hil.core.errors import BenchError
+from hil.core.errors.wording import shortened
 
 #: Classes of SQLSTATE (PostgreSQL, appendix A) that are about a statement; all others are about the server.
 _OF_THE_STATEMENT = ("21", "22", "23", "42", "P0")
@@ -112,7 +113,7 @@ def in_words(failure: BaseException) -> str:
         words = str(first.get("M", "")) if isinstance(first, dict) else str(failure)
     with contextlib.suppress(IndexError):
         words = words.strip().splitlines()[0]
-    return words[:_LONGEST] or type(failure).__name__
+    return shortened(words, _LONGEST) or type(failure).__name__
 
 
 def _of_the_server(context: ExceptionContext) -> bool:

@@ -9,6 +9,7 @@ from sqlalchemy import Engine, case, delete, select, update
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import sessionmaker
 
+from hil.core.errors.wording import shortened
 from hil.service.store._books import asked_apart
 from hil.service.store._files import KeptFile
 from hil.service.store._opening import now
@@ -51,7 +52,7 @@ class ResultStore:
     def tell(self, kind: ResultKind, number: int, facts: str) -> bool:
         """Have one known to others, new or changed; false if the number is that of another service's."""
         row: dict[str, Any] = {"kind": kind, "id": number, "service": self._service, "facts": facts}
-        row |= {"place": self._place[:300], "kept_at": None}
+        row |= {"place": shortened(self._place, 300), "kept_at": None}
         with self._transaction() as session:
             return put(session, ResultRow, row, where=ResultRow.service == self._service)
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 from sqlalchemy import ColumnElement, Engine, UnaryExpression, and_, func, or_, select
 from sqlalchemy.orm import InstrumentedAttribute, load_only, sessionmaker
 
 from hil.api_schemas.run_list import FoundRun, FoundRuns, RunChoices, RunsWanted
-from hil.core.result import CriterionResult
 from hil.service.store._books import asked_apart
 from hil.service.store._runs import RUN_COLUMNS, run_data
 from hil.service.store._tables import CriterionRow, RunRow, TagRow
@@ -18,6 +18,14 @@ _NEWEST = 200
 _MOST_CHOICES = 1000
 #: The best is looked for among so many newest that passed: of 2,000 the service was busy for 0.3 s.
 _MOST_PASSED = 200
+_JUDGED = (
+    CriterionRow.id,
+    CriterionRow.value,
+    CriterionRow.unit,
+    CriterionRow.upper,
+    CriterionRow.lower,
+    CriterionRow.verdict,
+)
 _FILTERS: dict[str, InstrumentedAttribute[Any]] = {
     "bench": RunRow.bench,
     "plan": RunRow.plan,
@@ -89,25 +97,23 @@ class RunList:
                 criteria=sorted(session.scalars(criteria.limit(_MOST_CHOICES))),
             )
 
-    def with_criteria_of(self, run: int) -> dict[int, list[CriterionResult]]:
-        """Criteria of a run, and by number those of the newest runs that passed and have one of its first."""
-        of_run = select(CriterionRow).where(CriterionRow.run == run).order_by(CriterionRow.id)
+    def criteria_beside(self, run: int) -> str:
+        """Criteria of a run, and those of the newest runs that passed and have one of its first, as JSON.
+
+        By numbers of runs, of each criterion what `_JUDGED` lists. A text: what reads it is another process,
+        and the service's loop does not go through it.
+        """
+        of_run = select(*_JUDGED).where(CriterionRow.run == run).order_by(CriterionRow.id)
         with self._transaction() as session:
-            own = list(session.scalars(of_run))
-            if not own:
-                return {run: []}
-            passed = select(RunRow.id).join(CriterionRow, CriterionRow.run == RunRow.id)
-            passed = passed.where(CriterionRow.id == own[0].id, RunRow.verdict == "pass", RunRow.id != run)
-            numbers = passed.order_by(RunRow.id.desc()).limit(_MOST_PASSED)
-            found: dict[int, list[CriterionResult]] = {run: [_criterion(one) for one in own]}
-            for row in session.scalars(select(CriterionRow).where(CriterionRow.run.in_(numbers))):
-                found.setdefault(row.run, []).append(_criterion(row))
-            return found
-
-
-def _criterion(row: CriterionRow) -> CriterionResult:
-    facts = {name: getattr(row, name) for name in ("id", "value", "unit", "upper", "lower", "verdict")}
-    return CriterionResult.model_validate(facts)
+            found: dict[int, list[list[Any]]] = {run: [list(row) for row in session.execute(of_run)]}
+            if found[run]:
+                passed = select(RunRow.id).join(CriterionRow, CriterionRow.run == RunRow.id)
+                passed = passed.where(CriterionRow.id == found[run][0][0], RunRow.verdict == "pass")
+                numbers = passed.where(RunRow.id != run).order_by(RunRow.id.desc()).limit(_MOST_PASSED)
+                beside = select(CriterionRow.run, *_JUDGED).where(CriterionRow.run.in_(numbers))
+                for number, *row in session.execute(beside):
+                    found.setdefault(number, []).append(row)
+        return json.dumps(found)
 
 
 def _is(wanted: RunsWanted) -> ColumnElement[bool]:

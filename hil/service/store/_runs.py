@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from hil.api_schemas.agent import TakenRun
 from hil.api_schemas.api import RunData, RunState, TrendPoint
+from hil.core.errors.wording import shortened
 from hil.core.result import CriterionResult, RunResult
 from hil.service.store._benches import HELD_S
 from hil.service.store._books import asked_apart
@@ -27,11 +29,12 @@ _MOMENTS = ("queued_at", "started_at", "ended_at")
 #: Columns that `run_data` reads.
 RUN_COLUMNS = frozenset({*_SAME, *_MOMENTS, "values_json"})
 _WAITING: tuple[RunState, ...] = ("waiting_approval", "queued")
+_LONGEST_KEY = 100
 
 
 @dataclass(frozen=True)
 class NewRun:
-    """A run to be queued; `plan_text` has its variables as chosen."""
+    """A run to be queued; `plan_text` has its variables as chosen, `key` is one of the person's own."""
 
     plan: str
     title: str
@@ -55,11 +58,12 @@ class RunStore:
         self._transaction = sessionmaker(engine, expire_on_commit=False).begin
 
     def add(self, wanted: NewRun, *, approved: bool) -> tuple[RunData, bool]:
-        """Queue a run, unless one was queued with the same key; the run, and whether it is a new one."""
+        """Queue a run, unless theirs of the same key is there; the run, and whether it is a new one."""
+        own_key = _own_key(wanted.requested_by, wanted.key) if wanted.key else None
         row = RunRow(
-            key=wanted.key or None,
+            key=own_key,
             plan=wanted.plan,
-            title=wanted.title[:200],
+            title=shortened(wanted.title, 200),
             plan_text=wanted.plan_text,
             plan_source=wanted.plan_source,
             service="",
@@ -67,7 +71,7 @@ class RunStore:
             state="queued" if approved else "waiting_approval",
             values_json=json.dumps(dict(wanted.values)),
             priority=wanted.priority,
-            hazard=wanted.hazard[:500],
+            hazard=shortened(wanted.hazard, 500),
             confirmed_by=wanted.confirmed_by,
             accept_expired=wanted.accept_expired,
             requested_by=wanted.requested_by,
@@ -82,7 +86,7 @@ class RunStore:
                 return run_data(row), True
         except IntegrityError:
             with self._transaction() as session:
-                return run_data(session.scalars(select(RunRow).where(RunRow.key == wanted.key)).one()), False
+                return run_data(session.scalars(select(RunRow).where(RunRow.key == own_key)).one()), False
 
     def get(self, run: int) -> RunData | None:
         """A run by its number."""
@@ -257,6 +261,12 @@ def _moved(session: Session, run: int, out_of: Sequence[RunState], **changes: ob
     return len(changed.all()) == 1
 
 
+def _own_key(person: str, key: str) -> str:
+    """A person's key among those of all; a long one by its SHA-256, for two keys are never the same."""
+    own = f"{person}:{key}"
+    return own if len(own) <= _LONGEST_KEY else hashlib.sha256(own.encode()).hexdigest()
+
+
 def _ending(
     state: RunState, exit_code: int | None, result: RunResult | None, reason: str
 ) -> dict[str, object]:
@@ -276,7 +286,7 @@ def _ended(
     result: RunResult | None,
     dut: str,
 ) -> bool:
-    if not _moved(session, run, out_of, **changes, dut=dut[:200]):
+    if not _moved(session, run, out_of, **changes, dut=shortened(dut, 200)):
         return False
     session.add_all(_criterion(run, one, dut) for one in (result.criteria if result else ()))
     return True
@@ -285,13 +295,13 @@ def _ended(
 def _criterion(run: int, one: CriterionResult, dut: str) -> CriterionRow:
     return CriterionRow(
         run=run,
-        id=one.id[:200],
+        id=shortened(one.id, 200),
         value=one.value,
-        unit=one.unit[:40],
+        unit=shortened(one.unit, 40),
         upper=one.upper,
         lower=one.lower,
         verdict=one.verdict,
-        dut=dut[:200],
+        dut=shortened(dut, 200),
     )
 
 

@@ -11,6 +11,7 @@ from sqlalchemy.orm import InstrumentedAttribute, Session, sessionmaker
 
 from hil.api_schemas.api import Role
 from hil.api_schemas.people import PersonData
+from hil.core.errors.wording import shortened
 from hil.service.stop_post import Owner
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now
@@ -95,13 +96,13 @@ def _row(session: Session, issuer: str, subject: str) -> PersonRow | None:
 
 def _own_name(session: Session, subject: str, name: str) -> str:
     """The name, with the subject behind it where somebody else or a token has it: no one acts as another."""
-    kept = name[: max(15, _LONGEST_NAME - len(subject) - 3)]
-    for own in (name, f"{kept} ({subject})"[:_LONGEST_NAME]):
+    kept = shortened(name, max(15, _LONGEST_NAME - len(subject) - 3))
+    for own in (name, shortened(f"{kept} ({subject})", _LONGEST_NAME)):
         people = select(PersonRow.id).where(_is(PersonRow.name, own))
         tokens = select(TokenRow.id).where(_is(TokenRow.name, own))
         if session.scalar(people) is None and session.scalar(tokens) is None:
             return own
-    return f"{name[:60]} {secrets.token_hex(8)}"
+    return f"{shortened(name, 60)} {secrets.token_hex(8)}"
 
 
 def _is(column: InstrumentedAttribute[str], name: str) -> ColumnElement[bool]:

@@ -21,6 +21,7 @@ _IDLE_S = 600.0
 TASKS = {
     "comparison": "_comparing:comparison",
     "traces": "_comparing:traces",
+    "best_run": "_best_run:best",
     "run_overview": "_viewing:overview",
     "run_spectrum": "_viewing:spectrum",
     "run_samples": "_viewing:samples",

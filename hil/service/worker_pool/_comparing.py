@@ -27,16 +27,18 @@ def comparison(first: list[str], other: list[str]) -> dict[str, Any]:
     """
     one, two = _run(*first), _run(*other)
     try:
-        found = compare([one, two], other_plans=True)
+        found = compare([one, two])
     except BadInputError as error:
         raise _by_name(error, one, two) from None
     all_differences = differences(one, two)
+    left = len(all_differences) - _MOST_DIFFERENCES
+    more = [f"{left} more differences of the inputs are not listed."] if left > 0 else []
     return {
         "plan": one.result.plan,
         "verdicts": [one.result.verdict, two.result.verdict],
         "distance": found.distances[1],
         "differences": [vars(each) for each in all_differences[:_MOST_DIFFERENCES]],
-        "notes": list(found.notes),
+        "notes": [*found.notes, *more],
         "criteria": [
             {
                 "id": row.id,

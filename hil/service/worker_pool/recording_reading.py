@@ -30,13 +30,15 @@ def recording(path: str, columns: list[str]) -> dict[str, Any]:
         ) from None
     units = found.metadata.get("units", {})
     names = list(found.channels)[:MOST_SHOWN_CHANNELS]
+    notes = [*found.damage, *found.notes]
+    left = len(notes) - _MOST_NOTES
     return {
         "samples": found.samples,
         "duration_s": found.last_s - found.first_s,
         "channel_count": len(found.channels),
         "channels": [{"name": name, "unit": units.get(name) or unit_of(name)} for name in names],
         "plan": run.plan if run is not None else "",
-        "notes": [*found.damage, *found.notes][:_MOST_NOTES],
+        "notes": notes if left <= 0 else [*notes[:_MOST_NOTES], f"and {left} more"],
         "used": used,
     }
 

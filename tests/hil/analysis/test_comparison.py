@@ -1,4 +1,4 @@
-"""Runs of one plan side by side: criteria, distances, and plans that do not go together."""
+"""Runs side by side: criteria, distances, and what differs in what was given."""
 
 import dataclasses
 import re
@@ -7,11 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.comparison import ComparedRun, compare, difference, differences, names_by_variables
+from hil.analysis.comparison import (
+    ComparedRun,
+    compare,
+    difference,
+    differences,
+    names_by_variables,
+    plan_differences,
+)
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, RunResult, Segment, VariableValue
-from reports.comparison import comparison_html, comparison_pdf, lead, value_text
+from reports.comparison import comparison_html, comparison_pdf, lead, plans_apart, value_text
 
 PLAN = b"name: one\nsteps: [{wait: {duration_s: 1}}]\ncriteria: []\n"
 
@@ -115,14 +122,8 @@ def test_a_segment_that_a_run_lacks_has_no_gap():
     assert np.isnan(compare([run("one"), short]).responses[0].gaps[1])
 
 
-def test_other_limits_are_another_plan():
-    other = PLAN.replace(b"criteria: []", b"criteria: [{segment: s, metric: peak, upper: 1}]")
-    with pytest.raises(BadInputError, match="a different plan.*criteria differ"):
-        compare([run("one"), run("two", plan=other)])
-
-
 def test_another_title_is_the_same_plan():
-    compare([run("one"), run("two", plan=PLAN + b"title: again\n")])
+    assert plan_differences(run("one"), run("two", plan=PLAN + b"title: again\n")) == ()
 
 
 def test_controllers_that_differ_are_noted():
@@ -221,6 +222,28 @@ def test_what_differs_in_a_copy_of_a_plan_is_named_by_segment_and_criterion():
     ]
 
 
+def test_what_a_copy_does_otherwise_is_said_at_the_head_of_the_comparison():
+    pairs = [(b"to_nm: 180", b"to_nm: 200"), (b"after_s: 2", b"after_s: 3"), (b"upper: 500", b"upper: 450")]
+    found = compare([changed(name="one"), changed(*pairs, (b"name: one", b"name: copy"))])
+    line = (
+        "The plan of copy differs: segment s (step): to_nm 200 N m instead of 180 N m; segment s (step): "
+        "after_s 3 s instead of 2 s; criterion s.peak.shaft_torque_nm: upper 450 N m instead of 500 N m."
+    )
+    assert plans_apart(found) == (line,)
+    assert line in comparison_html(found)
+    assert plans_apart(compare([changed(name="one"), changed()])) == ()
+    more = b"  - step: {segment: before, from_nm: 0, to_nm: 20}\n  - step: {segment: s,"
+    longer = compare(
+        [
+            changed(name="one"),
+            changed(*pairs, (b"default: 20", b"default: 25"), (b"  - step: {segment: s,", more)),
+        ]
+    )
+    assert plans_apart(longer)[0].endswith("; and 1 more.")
+    more_steps = compare([changed(name="one"), changed((b"  - step: {segment: s,", more))])
+    assert plans_apart(more_steps) == ("The plan of copy differs: segment before (step) is only in it.",)
+
+
 def test_a_step_that_was_put_in_is_one_difference_and_moves_no_other():
     more = b"  - step: {segment: before, from_nm: 0, to_nm: 20}\n  - step: {segment: s,"
     assert told(changed(), changed((b"  - step: {segment: s,", more))) == [
@@ -233,20 +256,18 @@ def test_a_segment_of_another_kind_is_not_the_same_segment():
     assert [one[1] for one in told(first, ramp)] == ["segment s (step)", "segment s (ramp)"]
     segments = tuple(one.model_copy(update={"kind": "ramp"}) for one in ramp.result.segments)
     other = dataclasses.replace(ramp, result=ramp.result.model_copy(update={"segments": segments}))
-    assert np.isnan(compare([first, other], other_plans=True).responses[0].gaps[1])
-    assert compare([first, ramp], other_plans=True).responses[0].gaps[1] == 0.0
+    assert np.isnan(compare([first, other]).responses[0].gaps[1])
+    assert compare([first, ramp]).responses[0].gaps[1] == 0.0
 
 
 def test_of_two_plans_criteria_that_a_run_lacks_have_neither_value_nor_verdict():
     first, other = changed(), changed((b"metric: peak", b"metric: jerk"))
     jerk = CriterionResult(id="s.jerk", value=3.0, unit="m/s³", upper=5.0, verdict="pass")
     other = dataclasses.replace(other, result=other.result.model_copy(update={"criteria": (jerk,)}))
-    found = compare([first, other], other_plans=True)
+    found = compare([first, other])
     rows = {row.id: (row.values, row.verdicts, row.limit) for row in found.criteria}
     assert rows["s.peak"] == ((400.0, None), ("pass", None), "≤ 500")
     assert rows["s.jerk"] == ((None, 3.0), (None, "pass"), "≤ 5")
-    with pytest.raises(BadInputError, match="a different plan"):
-        compare([first, other])
 
 
 def test_recordings_without_a_common_channel_are_refused():
@@ -254,4 +275,4 @@ def test_recordings_without_a_common_channel_are_refused():
     channels = {"time_s": other.recording.channels["time_s"], "oil_temperature_c": np.zeros(20_000)}
     other = dataclasses.replace(other, recording=dataclasses.replace(other.recording, channels=channels))
     with pytest.raises(BadInputError, match="has no channel in common with"):
-        compare([first, other], other_plans=True)
+        compare([first, other])

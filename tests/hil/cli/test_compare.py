@@ -38,6 +38,16 @@ def test_criteria_side_by_side(runs, capsys):
     assert json.loads(capsys.readouterr().out) == told
 
 
+def test_a_changed_copy_is_compared_and_what_differs_is_said(runs, capsys):
+    out = runs / "to_other"
+    assert guarded(["compare", str(runs / "one"), str(runs / "other"), "--out", str(out)]) == 0
+    line = "The plan of other differs: criterion s.peak_shaft_torque: upper 300 N m instead of 400 N m."
+    assert line in capsys.readouterr().out
+    assert line in (out / "report.html").read_text("utf-8")
+    (told,) = json.loads((out / "comparison.json").read_text())["differences"]
+    assert (told["run"], told["kind"], told["first"], told["other"]) == ("other", "plan", "400", "300")
+
+
 def test_runs_with_other_controllers_share_a_heading_that_names_neither(runs):
     other = str(LIBRARY / "controllers/gain_stabilization.toml")
     assert guarded(["run", str(runs / "one.yaml"), "--controller", other, "--out", str(runs / "gain")]) == 0
@@ -51,7 +61,6 @@ def test_runs_with_other_controllers_share_a_heading_that_names_neither(runs):
 @pytest.mark.parametrize(
     ("names", "message"),
     [
-        (("one", "other"), "ran a different plan from"),
         (("one",), "one run cannot be compared"),
         (("one", "one"), "is given twice"),
         (("one", "nowhere"), "there is no such file"),

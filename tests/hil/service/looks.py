@@ -1,4 +1,7 @@
-"""What every part of the page keeps: nothing that axe finds, nothing cut off, at every width and light."""
+"""What every part of the page keeps: nothing that axe finds, nothing cut off, at every width and light.
+
+And every text has its values: no `{name}` stands where a name should.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +16,7 @@ RULES = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]}
 
 def refuse_hard_to_use(page: playwright.Page) -> None:
     """As it is open now; skips the rest of a test where there is no axe."""
+    assert raw_placeholders(page) == []
     try:
         axe = node_modules() / "node_modules/axe-core/axe.min.js"
     except NotHereError as missing:
@@ -27,6 +31,27 @@ def refuse_hard_to_use(page: playwright.Page) -> None:
             found = page.evaluate("rules => axe.run(document, rules)", RULES)["violations"]
             shown = [(one["id"], [node["html"] for node in one["nodes"]]) for one in found]
             assert not shown, f"{shown} at {width} px, {scheme}"
+
+
+def raw_placeholders(page: playwright.Page) -> list[str]:
+    """Texts and attributes that show a placeholder in place of its value; what people wrote is left out."""
+    found: list[str] = page.evaluate(_RAW)
+    return found
+
+
+_RAW = """() => {
+  const raw = (text) => /\\{\\w+\\}|<\\/?\\w+>/.test(text), found = [];
+  const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  for (let one = texts.nextNode(); one; one = texts.nextNode()) {
+    const written = one.parentElement.closest("script, style, textarea, pre, code, .note");
+    if (raw(one.data) && !written) found.push(one.data);
+  }
+  for (const name of ["title", "aria-label", "alt", "placeholder"]) {
+    const all = [...document.querySelectorAll(`[${name}]`)].map((one) => one.getAttribute(name));
+    found.push(...all.filter(raw).map((value) => `${name}: ${value}`));
+  }
+  return found;
+}"""
 
 
 def expect_drawn(plot: playwright.Locator, *roles: str) -> None:

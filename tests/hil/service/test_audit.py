@@ -33,6 +33,14 @@ def test_a_log_that_nobody_touched_is_whole_also_if_several_write(engine: Engine
     assert log.check(found.head).problem == ""
 
 
+def test_what_the_log_has_no_room_for_leaves_a_sign(engine: Engine) -> None:
+    log = LogStore(engine)
+    log.add("anna", "operator", "note added", "r" * 201, "d" * 2000)
+    entry = log.newest(1000, 1)[0]
+    assert entry.target == "r" * 199 + "…"
+    assert entry.detail == "d" * 2000
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "change",

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
-import pytest
+import asyncio
+import json
+from typing import Any, Literal
 
-from hil.core.result import CriterionResult, CriterionVerdict
+import pytest
+from sqlalchemy import Engine
+
+from hil.core.result import CriterionResult, CriterionVerdict, RunResult
 from hil.service.best_run import best_run
+from hil.service.store import NewRun, RunList, RunStore
+from hil.service.worker_pool import WorkerPool
 
 
 def criterion(
@@ -71,3 +78,43 @@ def test_a_relative_limit_differs_from_run_to_run_and_counts_with_its_own() -> N
     best, among = best_run(first, {1: first, 2: other})
     assert best is not None
     assert (best.run, best.margin, among) == (2, pytest.approx(0.4), 2)
+
+
+@pytest.mark.slow
+def test_another_process_finds_it_in_what_the_database_has_of_the_runs(engine: Engine) -> None:
+    """The service's loop would stand still meanwhile."""
+    runs = RunStore(engine)
+    numbers = [_over(runs, peak) for peak in (400.0, 350.0, 100.0)]
+    failed = _over(runs, 600.0, verdict="fail")
+    listed = RunList(engine)
+
+    async def ask(run: int, *, passed: bool) -> dict[str, Any]:
+        pool = WorkerPool(niceness=0)
+        try:
+            return await pool.ask("best_run", run=run, passed=passed, criteria=listed.criteria_beside(run))
+        finally:
+            process = pool._process
+            pool.close()
+            if process is not None:
+                await process.wait()
+
+    best = asyncio.run(ask(numbers[0], passed=True))
+    assert best == {"run": numbers[2], "margin": pytest.approx(0.8), "criterion": "s.peak", "among": 3}
+    assert asyncio.run(ask(failed, passed=False)) == best
+    assert json.loads(listed.criteria_beside(9999)) == {"9999": []}
+
+
+def _over(runs: RunStore, peak: float, verdict: Literal["pass", "fail"] = "pass") -> int:
+    run = runs.add(NewRun("p", "P", "name: p", "p.yaml", "sim", {}, "anna"), approved=True)[0].id
+    assert runs.take(run, "me") is not None
+    result = RunResult(
+        verdict=verdict,
+        plan="p",
+        bench="sim",
+        real_time_factor=1.0,
+        bench_time_s=1.0,
+        safe_state="confirmed",
+        criteria=(criterion("s.peak", peak, upper=500.0, verdict=verdict),),
+    )
+    assert runs.end(run, "ended", result=result)
+    return run

@@ -56,6 +56,19 @@ def test_a_database_that_cannot_be_written_says_so(tmp_path: Path) -> None:
         open_database(f"sqlite:///{tmp_path / 'none' / 'service.sqlite'}")
 
 
+def test_a_key_is_a_persons_own_however_long_it_and_the_name_are(engine: Engine) -> None:
+    runs = RunStore(engine)
+
+    def added(by: str, key: str) -> int:
+        return runs.add(wanted(by=by, key=key), approved=True)[0].id
+
+    names = ("anna", "Anna von und zu Berg, night shift of test bench 4 " * 2)
+    keys = ("once", *(f"{'k' * 90}{number}" for number in range(2)))
+    first = {(by, key): added(by, key) for by in names for key in keys}
+    assert len(set(first.values())) == 6
+    assert {(by, key): added(by, key) for by, key in first} == first
+
+
 def test_a_run_is_taken_once_and_ended_once(engine: Engine) -> None:
     runs = RunStore(engine)
     run, is_new = runs.add(wanted(), approved=True)

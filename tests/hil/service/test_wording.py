@@ -58,6 +58,12 @@ def _problem(service: Served, method: str, path: str, body: object = None) -> An
             "must have something in it, and no control characters",
         ),
         (
+            "/benches/sim/reservations",
+            {"begins": _moment(1), "ends": _moment(2), "reason": "r" * 201},
+            "reason",
+            "must have at most 200 characters",
+        ),
+        (
             "/benches/sim/handovers",
             {"day": "2999-01-01", "shift": "early", "text": "x"},
             "day",

@@ -64,5 +64,5 @@ function Refusal(): JSX.Element | null {
   if (!error) return null;
   if (!(error instanceof Refused)) return <p class="alarm" role="alert" ref={shown}><English>{error.message}</English></p>;
   // What is wrong and what to do are sentences of their own, each in the reader's language where it is known.
-  return <p class="alarm" role="alert" ref={shown}>{error.where ? `${error.where}: ` : ""}<English>{error.what}</English>{error.fix ? <>{"\n"}<English>{error.fix}</English></> : null}</p>;
+  return <p class="alarm" role="alert" ref={shown}>{error.where ? <><English>{error.where}</English>{": "}</> : null}<English>{error.what}</English>{error.fix ? <>{"\n"}<English>{error.fix}</English></> : null}</p>;
 }

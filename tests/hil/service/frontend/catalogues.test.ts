@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import test from "node:test";
 import { LANGUAGES, languageOf, localeOf } from "../../../../hil/service/frontend/src/i18n/language.ts";
-import { CATALOGUES, allKeys, catalogueOf, formsOf, keysIn, languages, written, type Key, type Translation } from "../../../../hil/service/frontend/texts.ts";
+import { CATALOGUES, allCalls, allKeys, catalogueOf, formsOf, keysIn, languages, written, type Key, type Translation } from "../../../../hil/service/frontend/texts.ts";
 
 const keys = allKeys();
 const bracesOf = (text: string): string[] => [...new Set(text.match(/\{\w+\}|<\/?\w+>/g) ?? [])].sort();
@@ -38,13 +38,19 @@ test("each language that can be chosen has a catalogue, and each catalogue can b
 
 test("no text begins or ends with a space, as a piece of a sentence does", () => assert.deepEqual([...keys.keys()].filter((text) => text !== text.trim()), []));
 
+test("every name in braces has a value where the text is shown", () => {
+  assert.deepEqual(allCalls().filter((one) => one.unfilled.length).map(({ text, where, unfilled }) => `${where}: "${text}" lacks ${unfilled.join(", ")}`), []);
+  const found = keysIn("a.tsx", 't("{a} of {b}", { a }); t("{c}"); tx("<d>{e}</d>", { d: link }); tn("{count} run", "{count} runs of {f}", 2); t("{g}", values); t("{h}", { ...values }); said("{i}");');
+  assert.deepEqual(found.map(({ unfilled }) => unfilled), [["b"], ["c"], ["e"], ["f"], [], [], []]);
+});
+
 test("keys are found in calls and nowhere else", () => {
   const found = keysIn("a.tsx", 'const a = <p title={t("One")}>{tn("{count} run", "{count} runs", 2)} {tx("<a>x</a>", {})} {other("no")} {t(name)}</p>;');
   assert.deepEqual(found.map(({ text, plural }) => [text, plural]), [["One", false], ["{count} runs", true], ["<a>x</a>", false]]);
 });
 
 test("a mistake in a catalogue is named with its place", () => {
-  const key = { text: "{count} runs of {plan}", plural: false, where: "a.tsx:1" };
+  const key = { text: "{count} runs of {plan}", plural: false, where: "a.tsx:1", unfilled: [] };
   assert.match(mistakesOf("de", key, "{count} Läufe")[0] ?? "", /a\.tsx:1.*other braces/);
   assert.match(mistakesOf("de", key, "")[0] ?? "", /is empty/);
   assert.match(mistakesOf("de", key, undefined)[0] ?? "", /no translation/);

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import test from "node:test";
-import { changeOf, changeText } from "../../../../hil/service/frontend/src/views/compare-changes.ts";
+import { changeOf, changeText, ofPlan, saidOf, tabledOf, type Difference } from "../../../../hil/service/frontend/src/views/compare-changes.ts";
 
 const changed = (first: number | null, other: number | null, better: "lower" | "higher" | "") => changeOf({ values: [first, other], better });
 
@@ -19,4 +19,14 @@ test("less is better below an upper limit, more above a lower one, and neither w
 test("a difference has its sign and its unit, and a share of the first where that is not zero", () => {
   assert.equal(changeText({ by: -10, kind: "better" }, { unit: "N m", relative: -0.1 }), "−10.0\u00a0N m (−10.0%)");
   assert.equal(changeText({ by: 0.5, kind: "open" }, { unit: "s", relative: null }), "+0.50\u00a0s");
+});
+
+const difference = (kind: Difference["kind"], name: string): Difference => ({ kind, name, first: "1", other: "2", unit: "" });
+
+test("what a sentence says of the plan is not in the table, and what it leaves out is", () => {
+  const values = ["a", "b", "c", "d", "e"].map((name) => difference("plan", name));
+  const pair = { differences: [difference("plan", "title"), ...values, difference("model", "a")] };
+  assert.deepEqual(ofPlan(pair), values);
+  assert.deepEqual(saidOf(pair).map(({ name }) => name), ["a", "b", "c", "d"]);
+  assert.deepEqual(tabledOf(pair).map(({ kind, name }) => `${kind} ${name}`), ["plan title", "plan e", "model a"]);
 });

@@ -34,6 +34,21 @@ test("of roles, stops and a run-down the figures and names stay", () => {
   assert.equal(translated("ends after 4.2 s: the axle stands"), "the run-down ends after 4.2 s: the axle stands");
 });
 
+test("of several refusals in one each is known, and what it is about stays", () => {
+  const holds = "stays in service: run 3 (short, of anna) waits in its queue; anna has it until 2026-11-28 17:14 UTC; and 2 more";
+  const fields = "2 fields are wrong\n  reason must have at most 200 characters\n  ends must be later than begins, by 31 days at most";
+  assert.equal(translated(holds), holds);
+  assert.equal(translated(fields), fields.replace("reason must", "reason: must"));
+  assert.equal(translated("run 7: has 200 notes"), "run 7: has 200 notes");
+  assert.equal(translated("here: something else"), null);
+});
+
+test("kinds and states in a refusal are in the reader's words", () => {
+  assert.equal(translated("recording 4 is checking"), "recording 4 is checking");
+  assert.equal(translated("campaign 4 is waiting_approval"), "campaign 4 is waiting approval");
+  assert.equal(translated("there is no valid token '7'"), "there is no valid token '7'");
+});
+
 test("moments in texts are those of the reader's clock", () => {
   const shown = moment("2026-11-28T12:37:00Z");
   assert.equal(withLocalMoments("since 2026-11-28T12:37:18+00:00, by anna"), `since ${shown}, by anna`);

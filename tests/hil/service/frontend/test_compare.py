@@ -53,6 +53,15 @@ def test_a_run_of_a_copy_is_compared_with_the_best_run_in_one_click(
     differs = page.locator(".differs")
     expect(differs).to_contain_text("segment s (step): to_nm 100 ($torque_nm)")
     expect(differs).to_contain_text(re.compile("instead of 120.N m"))
+    assert page.locator("main").inner_text().count("to_nm") == 1
     expect(region(page, "Criteria").locator("table")).to_contain_text("Peak of the shaft torque")
     expect(page.locator("figure.plot")).to_have_count(3)
     refuse_hard_to_use(page)
+
+
+@pytest.mark.parametrize("refusals", [("404 (Not Found)",)])
+def test_more_runs_than_are_compared_are_not_left_out_without_a_word(
+    page: playwright.Page, there: Served
+) -> None:
+    to(page, there, f"compare?runs={','.join(map(str, range(91, 98)))}")
+    expect(page.get_by_text("7 runs are chosen; the first 6 are compared.")).to_be_visible()

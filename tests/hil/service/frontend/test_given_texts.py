@@ -11,7 +11,7 @@ from playwright import sync_api as playwright
 
 from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
 from tests.hil.service.looks import refuse_hard_to_use
-from tests.hil.service.served import SHORT, Served, served
+from tests.hil.service.served import ASKING, SHORT, Served, served
 
 pytestmark = IN_A_BROWSER
 _RESTORED = "What you typed and did not save is restored"
@@ -77,6 +77,65 @@ def test_a_text_that_is_too_long_is_said_and_not_cut(page: playwright.Page, ther
     expect(part.get_by_role("alert")).to_contain_text("It has 4001 letters; at most 4000 are kept.")
     expect(page.get_by_role("button", name="Add the note")).to_be_disabled()
     note.fill("")
+
+
+def _pasted(page: playwright.Page, field: playwright.Locator, text: str) -> None:
+    field.focus()
+    page.keyboard.insert_text(text)
+    expect(field).to_have_value(text)
+
+
+def _refused(page: playwright.Page, most: int) -> None:
+    said = f"It has {most + 50} letters; at most {most} are kept. Shorten it."
+    expect(page.get_by_role("alert")).to_have_text(said)
+
+
+def test_nothing_that_is_pasted_is_cut_and_the_limit_is_said(page: playwright.Page, there: Served) -> None:
+    sent: list[str] = []
+    page.on("request", lambda one: sent.append(one.url) if one.method in ("POST", "PUT") else None)
+    there.give("asking", ASKING)
+    run = there.queue("asking")
+    there.until(run, lambda found: found["prompt"] is not None)
+    try:
+        to(page, there, "benches/sim")
+        _pasted(page, page.get_by_label("Answer"), "y" * 550)
+        _refused(page, 500)
+        page.keyboard.press("Enter")
+        page.get_by_label("Answer").fill("")
+        page.get_by_text("Reserve the bench", exact=True).click()
+        _pasted(page, page.get_by_label("What for"), "endurance " * 25)
+        _refused(page, 200)
+        refuse_hard_to_use(page)
+        expect(page.get_by_role("button", name="Reserve", exact=True)).to_be_disabled()
+    finally:
+        there.post(f"/runs/{run}/abort")
+        there.over(run)
+    to(page, there, "controllers?write=new")
+    _pasted(page, page.get_by_label("Name", exact=True), "n" * 114)
+    _refused(page, 64)
+    expect(page.get_by_role("button", name="Keep it")).to_be_disabled()
+    to(page, there, "runs")
+    _pasted(page, page.get_by_label("Words"), "w" * 250)
+    _refused(page, 200)
+    assert [url for url in sent if re.search("/(answer|reservations|controllers/.*)$", url)] == []
+
+
+@pytest.mark.parametrize("refusals", [("422 (Unprocessable",)])
+def test_an_answer_that_was_refused_stays_in_its_field(page: playwright.Page, there: Served) -> None:
+    there.give("asking", ASKING)
+    run = there.queue("asking")
+    there.until(run, lambda found: found["prompt"] is not None)
+    try:
+        to(page, there, "benches/sim")
+        page.get_by_label("Answer").fill("bell \x85")  # no character of a line
+        page.get_by_role("button", name="Continue").click()
+        expect(page.get_by_role("alert")).to_contain_text("has characters that it must not have")
+        expect(page.get_by_label("Answer")).to_have_value("bell \x85")
+        page.get_by_label("Answer").fill("yes")
+        page.get_by_role("button", name="Continue").click()
+        expect(page.get_by_role("region", name="Question")).to_have_count(0)
+    finally:
+        there.over(run)
 
 
 @pytest.mark.parametrize("refusals", [("503 (Service Unavailable)",)])

@@ -69,6 +69,8 @@ def test_the_browsers_language_is_taken_and_another_is_chosen_in_the_settings(
     expect(heading(page, "設定")).to_be_visible()
     page.reload()
     expect(page.locator("html")).to_have_attribute("lang", "ja")
+    fonts = page.evaluate("getComputedStyle(document.body).fontFamily")  # of macOS, Windows and Linux
+    assert all(name in fonts for name in ("Hiragino Sans", "Yu Gothic", "Noto Sans CJK JP"))
     choice(page, "言語").select_option("")
     expect(heading(page, "Einstellungen")).to_be_visible()
 
@@ -184,3 +186,29 @@ def test_a_refusal_is_in_the_readers_words(page: playwright.Page, there: Served)
         expect(refusal).to_have_text(f"Lauf {waiting} ist nicht mehr in der Warteschlange")
     finally:
         there.post("/benches/sim/reset")
+
+
+@pytest.mark.parametrize("locale", ["de", "ja"])
+@pytest.mark.parametrize("refusals", [("422 (Unprocessable",)])
+def test_fields_that_are_refused_are_in_the_readers_words(
+    page: playwright.Page, there: Served, locale: str
+) -> None:
+    to(page, there, "runs/1")
+    refused = {"what": "must have at most 200 characters", "where": "run 1", "fix": "make it shorter"}
+    page.route(re.compile("/runs/1/notes$"), lambda route: _refuse_posts(route, refused))
+    note, add = ("Notiz", "Notiz hinzufügen") if locale == "de" else ("メモ", "メモを追加")
+    page.get_by_label(note, exact=True).fill("warm")
+    page.get_by_role("button", name=add, exact=True).click()
+    refusal = page.get_by_role("alert")
+    german = "Lauf 1: darf höchstens 200 Zeichen haben\nihn kürzen"
+    japanese = "試験 1: 200 文字以内でなければなりません\n短くしてください"
+    expect(refusal).to_have_text(german if locale == "de" else japanese)
+    expect(refusal.locator("[lang=en]")).to_have_count(0)
+    page.get_by_label(note, exact=True).fill("")
+
+
+def _refuse_posts(route: playwright.Route, refused: dict[str, str]) -> None:
+    if route.request.method == "POST":
+        route.fulfill(status=422, json=refused)
+    else:
+        route.continue_()

@@ -50,6 +50,29 @@ def test_a_run_that_waits_says_why_and_has_the_action_that_ends_it(
     expect(why).to_have_count(0)
 
 
+def test_a_note_that_is_being_typed_keeps_focus_and_caret_as_its_run_begins_and_ends(
+    page: playwright.Page, there: Served
+) -> None:
+    there.post("/benches/sim/emergency-stop")
+    run = there.queue("asking")
+    to(page, there, f"runs/{run}")
+    note = page.get_by_label("Note", exact=True)
+    note.fill("the shaft was warm")
+    note.evaluate("one => one.setSelectionRange(4, 9)")
+    there.post("/benches/sim/reset")
+    there.until(run, lambda found: found["prompt"] is not None)
+    expect(page.locator("h1")).to_contain_text("running")
+    page.keyboard.type("axle")
+    there.post(f"/runs/{run}/answer", {"text": "yes"})
+    there.over(run)
+    expect(page.locator("h1")).to_contain_text("pass")
+    expect(page.locator("figure.plot").first).to_be_visible()
+    page.keyboard.type(" of run 1")
+    expect(note).to_have_value("the axle of run 1 was warm")
+    expect(note).to_be_focused()
+    note.fill("")
+
+
 def test_the_page_of_a_queued_run_says_that_the_service_is_gone(
     browser: playwright.Browser, there: Served
 ) -> None:

@@ -9,6 +9,12 @@ test("values stand in the place of their braces, and an unknown one stays as it 
   assert.equal(t("{nothing} here"), "{nothing} here");
 });
 
+test("a value that the service did not say is a dash, never the braces", () => {
+  const unsaid = { seconds: undefined as unknown as number };
+  assert.equal(t("About {seconds} s of bench time.", unsaid), "About – s of bench time.");
+  assert.deepEqual(pieces("until {end}", { end: null }), ["until ", "–"]);
+});
+
 test("a number decides the form of the word, in English and by the categories of a catalogue's language", () => {
   assert.deepEqual([0, 1, 1200].map((count) => tn("{count} run", "{count} runs", count)), ["0 runs", "1 run", "1,200 runs"]);
   const catalogue = { "{count} runs": { one: "{count} běh", few: "{count} běhy", many: "{count} běhu", other: "{count} běhů" } };

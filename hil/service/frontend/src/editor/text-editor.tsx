@@ -6,6 +6,7 @@ import type { PlanMistake } from "../api/types.ts";
 import { useData } from "../data.ts";
 import { English } from "../i18n/english.tsx";
 import { t, tn } from "../i18n/text.ts";
+import { isTooLong, LONGEST_FILE, TooLong } from "../ui/too-long.tsx";
 import { lineAt } from "./lines.ts";
 import { offersAt, type FileKind, type Offer } from "./offers.ts";
 import type { Schema } from "./schema.ts";
@@ -34,7 +35,8 @@ export function TextEditor({ label, kind, schema, text, onText, checked, keep, c
   return (
     <form onSubmit={(event) => { event.preventDefault(); keep.do(); }}>
       <Typed label={label} kind={kind} schema={schema} text={text} wrong={mistakes.map((one) => one.line)} field={field} onText={onText} />
-      <div class="row level"><button type="submit" class="main" disabled={!sound || keep.missing !== ""}>{keep.name}</button>
+      <TooLong text={text} most={LONGEST_FILE} />
+      <div class="row level"><button type="submit" class="main" disabled={!sound || isTooLong(text, LONGEST_FILE) || keep.missing !== ""}>{keep.name}</button>
         <span class="quiet" role="status">{keep.missing || said}</span>
       </div>
       <ul class="mistakes" aria-label={t("Mistakes")}>{mistakes.map((one) => <li key={`${one.line} ${one.key} ${one.text}`}>{one.line === null ? null : <button type="button" class="plain" onClick={() => show(one)}>{t("line {line}", { line: one.line })}</button>}{" "}<English>{`${one.key ? `${one.key}: ` : ""}${one.text}`}</English></li>)}</ul>
@@ -76,7 +78,7 @@ function Typed({ label, kind, schema, text, wrong, field, onText }: TypedOptions
     <>
       <div class="editor">
         <div class="numbers" ref={numbers} aria-hidden="true">{text.split("\n").map((_, line) => <div key={line} class={wrong.includes(line + 1) ? "wrong" : ""}>{line + 1}</div>)}</div>
-        <textarea ref={field} aria-label={label} rows={28} wrap="off" spellcheck={false} autocomplete="off" maxLength={200_000} aria-invalid={wrong.length > 0} value={text}
+        <textarea ref={field} aria-label={label} rows={28} wrap="off" spellcheck={false} autocomplete="off" aria-invalid={wrong.length > 0 || isTooLong(text, LONGEST_FILE)} value={text}
           onInput={(event) => { onText(event.currentTarget.value); look(); }} onClick={look} onKeyUp={look} onKeyDown={onKey} onScroll={(event) => { if (numbers.current) numbers.current.scrollTop = event.currentTarget.scrollTop; }} />
       </div>
       <div class="offers">

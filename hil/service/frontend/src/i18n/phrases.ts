@@ -1,17 +1,18 @@
 // Sentences that the service says again and again, known by their form: shown in the reader's language.
 
 import { wordsOf } from "../format.ts";
-import { REFUSALS } from "./refusal-phrases.ts";
+import { FIELD_REFUSALS } from "./field-refusals.ts";
+import { FILE_REFUSALS } from "./file-refusals.ts";
+import { HOLDS, REFUSALS } from "./refusal-phrases.ts";
+import { wordsOf as wordsOfFirst, type Phrase, type Said } from "./said.ts";
 import { t } from "./text.ts";
-
-type Said = Record<string, string>;
 
 const named = (names = ""): string => (names === "RMCU and dynos" ? t("RMCU and dynos") : names);
 
 const turning = (of: Said): Said => ({ ...of, channel: wordsOf(of["channel"] ?? "") });
 
 // The words in groups are names and figures; they stay as they are.
-const PHRASES: [RegExp, (of: Said) => string][] = [
+const PHRASES: Phrase[] = [
   [/^drives enabled$/, () => t("drives enabled")],
   [/^(?<names>.+) answer$/, (of) => t("{names} answer", { names: named(of["names"]) })],
   [/^(?<name>.+) \((?<kind>gain|phase) stabilization\) written, read back$/, (of) => (of["kind"] === "gain" ? t("{name} (gain stabilization) written, read back", of) : t("{name} (phase stabilization) written, read back", of))],
@@ -42,15 +43,25 @@ const PHRASES: [RegExp, (of: Said) => string][] = [
   [/^its files are being uploaded$/, () => t("its files are being uploaded")],
   [/^its agent is not connected$/, () => t("its agent is not connected")],
   [/^run (?<run>\d+) of an earlier service process is being ended$/, (of) => t("run {run} of an earlier service process is being ended", of)],
+  [/^stays in service: (?<holds>.+)$/s, ({ holds = "" }) => t("stays in service: {holds}", { holds: holds.split("; ").map((one) => wordsOfFirst(HOLDS, one) ?? one).join("; ") })],
+  [/^(?<count>\d+) fields are wrong\n(?<lines>.+)$/s, ({ count = "", lines = "" }) => t("{count} fields are wrong", { count }) + lines.split("\n").map((line) => `\n  ${ofField(line.trim())}`).join("")],
+  ...FIELD_REFUSALS,
   ...REFUSALS,
+  ...FILE_REFUSALS,
   [/^emergency stop since (?<since>[^,]+), by (?<person>.+?): requested by .+$/, (of) => t("emergency stop since {since}, by {person}", of)],
 ];
 
-// Null for a sentence that is none of them.
+// A line of several: the field, then what is wrong with it.
+function ofField(line: string): string {
+  const [, field = "", what = line] = /^(\S+) (.+)$/.exec(line) ?? [];
+  const whole = wordsOfFirst(FIELD_REFUSALS, line), words = wordsOfFirst(FIELD_REFUSALS, what);
+  return whole ?? (words === null ? line : `${field}: ${words}`);
+}
+
+// Null for a sentence that is none of them. Where it says first what it is about, that stays.
 export function translated(text: string): string | null {
-  for (const [form, words] of PHRASES) {
-    const found = form.exec(text);
-    if (found) return words(found.groups ?? {});
-  }
-  return null;
+  const known = wordsOfFirst(PHRASES, text);
+  if (known !== null) return known;
+  const [, where = "", what = ""] = /^([^:\n]{1,100}): (.+)$/s.exec(text) ?? [], words = what ? wordsOfFirst(PHRASES, what) : null;
+  return words === null ? null : `${wordsOfFirst(PHRASES, where) ?? where}: ${words}`;
 }

@@ -6,8 +6,10 @@ import { CATALOGUE, LANGUAGE, LOCALE, type Catalogue } from "./language.ts";
 export type Values = Record<string, string | number>;
 export type Shown = Record<string, ComponentChildren | ((words: ComponentChildren) => ComponentChildren)>;
 
+const NOTHING = "–"; // what the service did not say
+
 const filled = (text: string, values: Values): string =>
-  text.replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
+  text.replace(/\{(\w+)\}/g, (whole, name: string) => (name in values ? String(values[name] ?? NOTHING) : whole));
 
 const found = (text: string): string => {
   const known = CATALOGUE[text];
@@ -36,6 +38,7 @@ export function pieces(text: string, shown: Shown): ComponentChildren[] {
   return text.split(/(\{\w+\}|<\w+>.*?<\/\w+>)/).filter(Boolean).map((piece) => {
     const [, whole = "", around = "", words = ""] = /^\{(\w+)\}$|^<(\w+)>(.*?)<\/\w+>$/.exec(piece) ?? [];
     const element = shown[whole || around];
-    return typeof element === "function" ? element(/\{/.test(words) ? pieces(words, shown) : words) : element ?? piece;
+    if (typeof element === "function") return element(/\{/.test(words) ? pieces(words, shown) : words);
+    return (whole || around) in shown ? element ?? NOTHING : piece;
   });
 }

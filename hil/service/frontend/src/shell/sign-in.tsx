@@ -42,7 +42,7 @@ function TokenForm({ first = false }: { first?: boolean }): JSX.Element {
   };
   return (
     <form onSubmit={(event) => void submit(event)}>
-      <label class="field">{t("Token")} <input ref={secret} type="password" autocomplete="current-password" required maxLength={200} /></label>
+      <label class="field">{t("Token")} <input ref={secret} type="password" autocomplete="current-password" required /></label>
       <button type="submit" class="main">{t("Sign in")}</button>
       <p class="quiet">{t("An administrator makes tokens.")}</p>
     </form>

@@ -9,6 +9,8 @@ const KINDS: Record<string, string> = {
   arriving: t("arriving"), checking: t("checking"), ready: t("ready"), refused: t("refused"),
   bench: t("bench"), plan: t("plan"), model: t("model"), controller: t("controller"), diagnosis: t("diagnosis"), identification: t("identification"), transfer_function: t("transfer function"), physical: t("physical"),
   tuning: t("tuning"), autotuning: t("autotuning"), linear: t("linear"), doubtful: t("doubtful"), stable: t("stable"), unstable: t("unstable"), segment: t("segment"), event: t("event"), hold: t("hold"),
+  run: t("run"), note: t("note"), tag: t("tag"), recording: t("recording"), study: t("study"), campaign: t("campaign"), file: t("file"), version: t("version"), reservation: t("reservation"), person: t("person"), "valid token": t("valid token"),
+  "given plan": t("given plan"), "given model": t("given model"), "given controller": t("given controller"), "given bench file": t("given bench file"), "bench of this service": t("bench of this service"), "bench of a bench file": t("bench of a bench file"), "bench of an agent": t("bench of an agent"),
   free: t("free"), ending: t("ending"), in_use: t("in use"), emergency_stop: t("emergency stop"), away: t("away"), open: t("open"), named: t("named"), unknown: t("unknown"), none: t("none"), picture: t("picture"), phase: t("phase"), gain: t("gain"),
 };
 

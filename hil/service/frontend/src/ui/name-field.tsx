@@ -2,6 +2,7 @@
 
 import type { JSX } from "preact";
 import { t } from "../i18n/text.ts";
+import { LimitedField, LONGEST_FILE_NAME } from "./too-long.tsx";
 
 interface Options {
   value: string;
@@ -13,8 +14,6 @@ interface Options {
 
 export function NameField({ value, onChange, label = t("Name"), optional = false, placeholder = "" }: Options): JSX.Element {
   return (
-    <label class="field">{label}
-      <input required={!optional} maxLength={64} pattern="[A-Za-z0-9][A-Za-z0-9_\-]*" title={t("letters, digits, _ and -")} autocomplete="off" placeholder={placeholder} value={value} onInput={(event) => onChange(event.currentTarget.value)} />
-    </label>
+    <LimitedField label={label} most={LONGEST_FILE_NAME} required={!optional} pattern="[A-Za-z0-9][A-Za-z0-9_\-]*" title={t("letters, digits, _ and -")} placeholder={placeholder} value={value} onText={onChange} />
   );
 }

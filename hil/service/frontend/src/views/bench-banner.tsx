@@ -11,7 +11,8 @@ import { t, tx } from "../i18n/text.ts";
 import { useLost, type BenchState } from "../live.ts";
 import { useMay, useMe } from "../session.ts";
 import { linkTo } from "../ui/parts.tsx";
-import { PromptCard } from "./panel-prompt.tsx";
+import { LimitedField } from "../ui/too-long.tsx";
+import { LONGEST_ANSWER, PromptCard } from "./panel-prompt.tsx";
 import { aboutBench, headlineOf, isHeld, isReserved, nextIn, resetText, titleOf } from "./bench-words.ts";
 
 export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 }): JSX.Element {
@@ -79,12 +80,11 @@ function AnswerForm({ run }: { run: number }): JSX.Element {
   const [text, setText] = useState("");
   const send = (event: Event) => {
     event.preventDefault();
-    void attempt(() => post(`/runs/${run}/answer`, { text }));
-    setText("");
+    void attempt(() => post(`/runs/${run}/answer`, { text }).then(() => true)).then((taken) => { if (taken) setText(""); });
   };
   return (
     <form class="row" onSubmit={send}>
-      <label class="field">{t("Answer")} <input maxLength={500} autocomplete="off" value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
+      <LimitedField label={t("Answer")} most={LONGEST_ANSWER} value={text} onText={setText} />
       <button type="submit" class="main">{t("Send")}</button>
     </form>
   );

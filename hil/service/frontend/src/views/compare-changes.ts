@@ -1,4 +1,5 @@
-// How a criterion differs between two runs: the other minus the first, in its unit, and whether that is better.
+// How two runs differ: of a criterion the other minus the first, in its unit, and whether that is better; of what they
+// were given what is said in sentences, and what stands in the table.
 
 import type { Comparison } from "../api/types.ts";
 import { figure, percent } from "../format.ts";
@@ -24,4 +25,21 @@ const signed = (value: number, text: string): string => (value > 0 ? `+${text}` 
 export function changeText({ by }: Change, { unit, relative }: Pick<Row, "unit" | "relative">): string {
   const own = signed(by, figure(by, unit));
   return relative == null ? own : `${own} (${signed(relative, percent(relative, 1))})`;
+}
+
+export type Difference = Comparison["differences"][number];
+
+const SAID = 4;
+const NAMES = ["name", "title", "description"]; // called otherwise, not otherwise done
+
+export const keyOf = (one: Difference): string => `${one.kind} ${one.name}`;
+
+export const ofPlan = ({ differences }: Pick<Comparison, "differences">): Difference[] => differences.filter((one) => one.kind === "plan" && !NAMES.includes(one.name));
+
+export const saidOf = (pair: Pick<Comparison, "differences">): Difference[] => ofPlan(pair).slice(0, SAID);
+
+// Nothing is said twice.
+export function tabledOf(pair: Pick<Comparison, "differences">): Difference[] {
+  const said = saidOf(pair);
+  return pair.differences.filter((one) => !said.includes(one));
 }

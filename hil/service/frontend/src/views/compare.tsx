@@ -6,17 +6,17 @@ import { get } from "../api/client.ts";
 import type { Comparison, FoundRuns, Run, RunView } from "../api/types.ts";
 import { to } from "../addresses.ts";
 import { useData } from "../data.ts";
-import { joined, moment } from "../format.ts";
+import { moment } from "../format.ts";
 import { English } from "../i18n/english.tsx";
-import { t, tn, tx } from "../i18n/text.ts";
+import { t, tx } from "../i18n/text.ts";
 import { roleOf } from "../plot/frame.ts";
 import { useQuery } from "../router.ts";
 import { kindInWords } from "../ui/kinds.ts";
-import { linkTo, Heading, Scroll, Section } from "../ui/parts.tsx";
+import { linkTo, Heading, Section } from "../ui/parts.tsx";
 import { recordingsFrom, type Beside } from "./compare-beside.ts";
 import { ChooseRecordings } from "./compare-recordings.tsx";
-import { changeOf, type Change } from "./compare-changes.ts";
 import { ComparedCriteria } from "./compare-criteria.tsx";
+import { Differences, Lead } from "./compare-inputs.tsx";
 import { ComparePlot, stretchOf } from "./compare-plot.tsx";
 
 const CHANNELS = ["shaft_torque_nm", "motor_speed_rad_s", "motor_torque_nm"];
@@ -24,7 +24,7 @@ const MOST = 6;
 
 export function Compare(): JSX.Element {
   const [query, setQuery] = useQuery();
-  const runs = (query.get("runs") ?? "").split(",").map(Number).filter((one) => Number.isInteger(one) && one > 0).slice(0, MOST);
+  const chosen = (query.get("runs") ?? "").split(",").map(Number).filter((one) => Number.isInteger(one) && one > 0), runs = chosen.slice(0, MOST);
   const set = (changed: number[]) => {
     const next = new URLSearchParams(query);
     next.set("runs", changed.join(","));
@@ -40,6 +40,7 @@ export function Compare(): JSX.Element {
     <>
       <Heading>{t("Compare runs")}</Heading>
       <Choose runs={runs} onChange={set} />
+      {chosen.length > MOST ? <p class="bad" role="status">{t("{count} runs are chosen; the first {most} are compared.", { count: chosen.length, most: MOST })}</p> : null}
       {runs.length ? <ChooseRecordings chosen={beside} runs={runs.length} onChange={setBeside} /> : null}
       {runs.length >= 2 || (runs.length && beside.length) ? <Compared key={runs.join()} runs={runs} beside={beside} query={query} setQuery={setQuery} /> : <p class="quiet">{tx("Choose two runs or more, of one plan or of its copies; in the <a>table of runs</a> they can be ticked.", { a: linkTo(to.list("runs")) })}</p>}
     </>
@@ -153,68 +154,5 @@ function Compared({ runs, beside, query, setQuery }: { runs: number[]; beside: B
       ) : <p class="quiet">{t("No segment of the same name and kind is in all of these runs: their traces cannot be laid over each other.")}</p>}
       {pairs?.length ? <ComparedCriteria pairs={pairs} /> : null}
     </>
-  );
-}
-
-type Difference = Comparison["differences"][number];
-
-const NOTHING = "–";
-const valueOf = (text: string, unit = ""): string => (text === NOTHING ? text : joined(text, unit));
-
-function Lead({ pair }: { pair: Comparison }): JSX.Element {
-  const { first, other, criteria, notes } = pair, changes = criteria.map(changeOf).filter((one) => one !== null);
-  const count = (kind: Change["kind"]): number => changes.filter((one) => one.kind === kind).length;
-  return (
-    <>
-      <p>{changes.length === 0 ? t("No criterion has a value in both runs {first} and {other}.", { first: first.id, other: other.id })
-        : t("Criteria of run {other} against run {first}: {better} better, {worse} worse, {same} the same, {open} without a direction.", { other: other.id, first: first.id, better: count("better"), worse: count("worse"), same: count("same"), open: count("open") })}</p>
-      <PlanDiffers pair={pair} />
-      {notes.map((note) => <p class="quiet" key={note}><English>{note}</English></p>)}
-    </>
-  );
-}
-
-const SAID = 4;
-const NAMES = ["name", "title", "description"]; // called otherwise, not otherwise done
-
-// What is done otherwise, in a sentence for each value; the table below has all of them.
-function PlanDiffers({ pair: { other, differences } }: { pair: Comparison }): JSX.Element | null {
-  const ones = differences.filter((one) => one.kind === "plan" && !NAMES.includes(one.name));
-  if (!ones.length) return null;
-  const text = ({ name, first, other: its, unit }: Difference): string =>
-    first === NOTHING ? t("{what} is only in run {run}", { what: name, run: other.id }) : its === NOTHING ? t("{what} is not in run {run}", { what: name, run: other.id })
-      : t("{what} {other} instead of {first}", { what: name, other: its, first: joined(first, unit ?? "") });
-  return (
-    <>
-      <p>{t("The plan of run {run} differs:", { run: other.id })}</p>
-      <ul class="differs">
-        {ones.slice(0, SAID).map((one) => <li key={one.name}>{text(one)}</li>)}
-        {ones.length > SAID ? <li>{tn("{count} more difference, in the table", "{count} more differences, in the table", ones.length - SAID)}</li> : null}
-      </ul>
-    </>
-  );
-}
-
-function Differences({ pairs }: { pairs: Comparison[] }): JSX.Element {
-  const first = pairs[0]?.first.id ?? 0;
-  const rows = new Map<string, { kind: string; name: string; first: string; others: Map<number, string> }>();
-  for (const pair of pairs) {
-    for (const one of pair.differences) {
-      const key = `${one.kind} ${one.name}`, row = rows.get(key) ?? { kind: one.kind, name: one.name, first: valueOf(one.first, one.unit), others: new Map<number, string>() };
-      row.others.set(pair.other.id, valueOf(one.other, one.unit));
-      rows.set(key, row);
-    }
-  }
-  return (
-    <Section title={t("Different inputs")} label="inputs">
-      {rows.size === 0 ? <p class="quiet">{t("Controllers, model, bench and plan values are identical.")}</p> : (
-        <Scroll label={t("Different inputs")}>
-          <table>
-            <thead><tr><th scope="col">{t("kind")}</th><th scope="col">{t("value")}</th><th scope="col" class="number">{t("run {run}", { run: first })}</th>{pairs.map((pair) => <th key={pair.other.id} scope="col" class="number">{t("run {run}", { run: pair.other.id })}</th>)}</tr></thead>
-            <tbody>{[...rows].map(([key, row]) => <tr key={key}><th scope="row"><English>{row.kind}</English></th><td>{row.name}</td><td class="number">{row.first}</td>{pairs.map((pair) => <td key={pair.other.id} class="number">{row.others.get(pair.other.id) ?? t("the same")}</td>)}</tr>)}</tbody>
-          </table>
-        </Scroll>
-      )}
-    </Section>
   );
 }

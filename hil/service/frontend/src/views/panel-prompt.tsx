@@ -9,16 +9,17 @@ import { attempt } from "../data.ts";
 import { roughly } from "../format.ts";
 import { t } from "../i18n/text.ts";
 import { useMay } from "../session.ts";
+import { LimitedField } from "../ui/too-long.tsx";
 
 const LITTLE_S = 30;
+export const LONGEST_ANSWER = 500;
 
 // An answer reaches the run only while whoever drives its bench is there.
 export function PromptCard({ prompt, run, reached }: { prompt: Prompt; run: number; reached: boolean }): JSX.Element {
   const may = useMay(), [text, setText] = useState("");
   const send = (event: Event) => {
     event.preventDefault();
-    void attempt(() => post(`/runs/${run}/answer`, { text }));
-    setText("");
+    void attempt(() => post(`/runs/${run}/answer`, { text }).then(() => true)).then((taken) => { if (taken) setText(""); });
   };
   return (
     <section class="prompt" aria-label={t("Question")}>
@@ -27,7 +28,7 @@ export function PromptCard({ prompt, run, reached }: { prompt: Prompt; run: numb
         <Countdown until={prompt.answer_by} />
         {may("operator") && reached ? (
           <form class="row" onSubmit={send}>
-            <label class="field">{t("Answer")}<input maxLength={500} autocomplete="off" value={text} onInput={(event) => setText(event.currentTarget.value)} /></label>
+            <LimitedField label={t("Answer")} most={LONGEST_ANSWER} value={text} onText={setText} />
             <button type="submit" class="main">{t("Continue")}</button>
           </form>
         ) : null}

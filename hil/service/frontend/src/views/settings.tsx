@@ -15,6 +15,7 @@ import { chooseTheme, theme, THEME_NAMES, THEMES } from "../theme.ts";
 import { People } from "./team/people.tsx";
 import { kindInWords } from "../ui/kinds.ts";
 import { Facts, Heading, Loaded, Moment, Scroll, Section } from "../ui/parts.tsx";
+import { LimitedField } from "../ui/too-long.tsx";
 
 export function Settings(): JSX.Element {
   const may = useMay(), me = useMe();
@@ -67,7 +68,7 @@ function ServiceState(): JSX.Element {
               [t("stop post"), found.stop_url ? <code>{found.stop_url}</code> : <span class="bad">{t("not available")}</span>],
             ]}
           </Facts>
-          {apart.map((one) => <p key={one.file} class="bad">{tx("{name} is kept apart: {why}", { name: `${kindInWords(one.kind)} ${one.name}`, why: <English>{`${one.why}. ${one.fix}`}</English> })}</p>)}
+          {apart.map((one) => <p key={one.file} class="bad">{tx("{name} is kept apart: {why}", { name: `${kindInWords(one.kind)} ${one.name}`, why: <><English>{one.why}</English>{". "}<English>{one.fix}</English></> })}</p>)}
         </>
       )}
     </Loaded>
@@ -84,6 +85,8 @@ function Agents(): JSX.Element {
     </Loaded>
   );
 }
+
+const LONGEST_NAME = 100;
 
 function Tokens(): JSX.Element {
   const tokens = useData<TokenData[]>("/tokens");
@@ -102,7 +105,7 @@ function Tokens(): JSX.Element {
   return (
     <>
       <form class="row" onSubmit={(event) => void make(event)}>
-        <label class="field">{t("Name")}<input required maxLength={100} value={name} onInput={(event) => setName(event.currentTarget.value)} /></label>
+        <LimitedField label={t("Name")} most={LONGEST_NAME} required value={name} onText={setName} />
         <label class="field">{t("Role")}<select value={role} onChange={(event) => setRole(event.currentTarget.value)}>{[...ROLES, "agent"].map((one) => <option key={one} value={one}>{kindInWords(one)}</option>)}</select></label>
         <label class="field">{t("Days")}<input type="number" min={1} max={3650} required value={days} onInput={(event) => setDays(event.currentTarget.value)} /></label>
         <button type="submit" class="main">{t("Make a token")}</button>

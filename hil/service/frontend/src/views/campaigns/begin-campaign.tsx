@@ -9,6 +9,7 @@ import { DraftNotice } from "../../editor/draft-notice.tsx";
 import { useDraft } from "../../editor/use-draft.ts";
 import { t } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
+import { LONGEST_FILE, refuseTooLong, TooLong } from "../../ui/too-long.tsx";
 import { CampaignForm } from "./form-fields.tsx";
 import { campaignText, NOTHING, type Chosen, type Property } from "./campaign-form.ts";
 
@@ -53,7 +54,8 @@ export function BeginCampaign(): JSX.Element {
       </label>
       {byForm && schema ? <CampaignForm schema={schema} chosen={chosen} onChange={(chosen) => change({ chosen })} /> : null}
       {from === OWN ? <OwnFiles onText={(typed) => change({ typed })} onBeside={(beside) => change({ beside })} /> : null}
-      <label class="field">{t("Content")}<textarea rows={byForm ? 6 : 14} spellcheck={false} required maxLength={200_000} readOnly={byForm} value={text} onInput={(event) => change({ typed: event.currentTarget.value })} /></label>
+      <label class="field">{t("Content")}<textarea rows={byForm ? 6 : 14} spellcheck={false} required ref={refuseTooLong(text, LONGEST_FILE)} readOnly={byForm} value={text} onInput={(event) => change({ typed: event.currentTarget.value })} /></label>
+      <TooLong text={text} most={LONGEST_FILE} />
       <button type="submit" class="main">{t("Simulate")}</button>
     </form>
   );

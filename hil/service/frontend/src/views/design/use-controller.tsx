@@ -9,6 +9,7 @@ import { attempt } from "../../data.ts";
 import { t } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { NameField } from "../../ui/name-field.tsx";
+import { isTooLong, LONGEST_FILE_NAME } from "../../ui/too-long.tsx";
 import { loadedBy } from "./loaded-controllers.ts";
 
 interface Loading {
@@ -30,10 +31,11 @@ export function UseController({ controller: given = "", plan: first = "", query 
   }, []);
   const of = plans?.find((one) => one.plan.name === plan) ?? (first ? undefined : plans?.[0]);
   const inPlace = of?.files.find((one) => one === file) ?? of?.files[0] ?? "", chosen = controller || controllers[0] || "";
+  const joined = of && chosen ? `${of.plan.name}-${chosen}` : "", usual = isTooLong(joined, LONGEST_FILE_NAME) ? "" : joined;
   const make = async (event: Event) => {
     event.preventDefault();
     if (!of) return;
-    const made = await attempt(() => post<Plan>(`/plans/${encodeURIComponent(of.plan.name)}/copies`, { name: name || `${of.plan.name}-${chosen}`.slice(0, 64), controllers: { [inPlace]: chosen } }));
+    const made = await attempt(() => post<Plan>(`/plans/${encodeURIComponent(of.plan.name)}/copies`, { name: name || usual, controllers: { [inPlace]: chosen } }));
     if (made) go(to.plan(made.name) + (query ? `?${query}` : ""));
   };
   if (first && plans && !plans.some((one) => one.plan.name === first)) return <p class="quiet">{t("This plan loads no controller by a file.")}</p>;
@@ -42,7 +44,7 @@ export function UseController({ controller: given = "", plan: first = "", query 
       <label class="field">{t("Controller")}<select value={chosen} onChange={(event) => setController(event.currentTarget.value)}>{controllers.map((one) => <option key={one}>{one}</option>)}</select></label>
       <label class="field">{t("in the plan")}<select value={of?.plan.name ?? ""} onChange={(event) => setPlan(event.currentTarget.value)}>{(plans ?? []).map((one) => <option key={one.plan.name} value={one.plan.name}>{one.plan.title || one.plan.name}</option>)}</select></label>
       <label class="field">{t("in place of")}<select value={inPlace} onChange={(event) => setFile(event.currentTarget.value)}>{(of?.files ?? []).map((one) => <option key={one}>{one}</option>)}</select></label>
-      <NameField label={t("as plan")} value={name} onChange={setName} optional placeholder={of && chosen ? `${of.plan.name}-${chosen}`.slice(0, 64) : ""} />
+      <NameField label={t("as plan")} value={name} onChange={setName} optional={usual !== ""} placeholder={usual} />
       <button type="submit" disabled={!of || !chosen}>{t("Make the plan")}</button>
     </form>
   );

@@ -17,6 +17,7 @@ import { t } from "../../i18n/text.ts";
 import { go, useQuery } from "../../router.ts";
 import { NameField } from "../../ui/name-field.tsx";
 import { Section } from "../../ui/parts.tsx";
+import { isTooLong, LONGEST_FILE_NAME, tooLongText } from "../../ui/too-long.tsx";
 import { kindOf, nextName, type GivenKind } from "./kinds.ts";
 
 interface Options {
@@ -53,7 +54,7 @@ export function FileEditor({ kind, text: given, item, basedOn = "" }: Options): 
     draft.saved();
     go(of.address(theirs.name));
   };
-  const missing = !name ? t("It has no name yet.") : !isName ? t("A name has letters, digits, _ and -.") : taken.includes(name) ? t("{name} is there already, and stays what it is: choose another name.", { name }) : "";
+  const missing = !name ? t("It has no name yet.") : isTooLong(name, LONGEST_FILE_NAME) ? tooLongText(name, LONGEST_FILE_NAME) : !isName ? t("A name has letters, digits, _ and -.") : taken.includes(name) ? t("{name} is there already, and stays what it is: choose another name.", { name }) : "";
   return (
     <>
       <DraftNotice of={draft} />

@@ -9,6 +9,7 @@ import { DraftNotice } from "../../editor/draft-notice.tsx";
 import { useDraft } from "../../editor/use-draft.ts";
 import type { VersionedKind } from "../../editor/versions.tsx";
 import { t } from "../../i18n/text.ts";
+import { LimitedField, LONGEST_FILE_NAME } from "../../ui/too-long.tsx";
 import { emptyFile } from "../recordings/send-recording.ts";
 
 interface Options {
@@ -50,7 +51,7 @@ export function GiveFile({ kind, submit, path, ending, onGiven }: Options): JSX.
       {theirs ? <Conflict theirs={theirs} mine={text} keep={{ name: t("Keep mine as the newer version"), do: () => void give(theirs.tag) }} take={() => seen(theirs)} /> : null}
       <div class="row">
         <label class="field">{t("File ({ending})", { ending })}<input type="file" accept={`${ending},text/plain`} onChange={(event) => void take(event.currentTarget)} /></label>
-        <label class="field">{t("Name")}<input required maxLength={64} pattern="[A-Za-z0-9][A-Za-z0-9_.\-]*" autocomplete="off" value={name} onInput={(event) => draft.set({ text, name: event.currentTarget.value })} /></label>
+        <LimitedField label={t("Name")} most={LONGEST_FILE_NAME} required pattern="[A-Za-z0-9][A-Za-z0-9_.\-]*" value={name} onText={(typed) => draft.set({ text, name: typed })} />
         <button type="submit" class="main" disabled={!name || !text}>{submit}</button>
       </div>
       <label class="field">{t("Text")}<textarea rows={6} spellcheck={false} value={text} onInput={(event) => draft.set({ name, text: event.currentTarget.value })} /></label>

@@ -6,8 +6,10 @@ import type { RunChoices } from "../../api/types.ts";
 import { useData } from "../../data.ts";
 import { t } from "../../i18n/text.ts";
 import { kindInWords } from "../../ui/kinds.ts";
+import { isTooLong, LimitedField } from "../../ui/too-long.tsx";
 import { FILTERS, type Filter, type RunsQuery } from "./runs-query.ts";
 
+const LONGEST_WORDS = 200;
 const NAMES: Record<Filter, string> = { plan: t("Plan"), bench: t("Bench"), dut: t("Device"), verdict: t("Verdict"), requested_by: t("Asked for by"), state: t("State"), tag: t("Tag") };
 const VERDICTS = ["pass", "fail", "error", "done"];
 const STATES = ["waiting_approval", "queued", "running", "ended", "interrupted", "cancelled"];
@@ -55,14 +57,11 @@ function Typed({ label, type, value, onChange }: { label: string; type: "search"
   const [text, setText] = useState(value);
   useEffect(() => setText(value), [value]);
   useEffect(() => {
-    if (text === value) return undefined;
+    if (text === value || isTooLong(text, LONGEST_WORDS)) return undefined;
     const timer = setTimeout(() => onChange(text), WAIT_MS);
     return () => clearTimeout(timer);
   }, [text]);
   const take = (event: { currentTarget: HTMLInputElement }) => setText(event.currentTarget.value);
-  return (
-    <label class="field">{label}
-      {type === "date" ? <input type="date" value={text} onInput={take} /> : type === "number" ? <input type="number" step="any" value={text} onInput={take} /> : <input type="search" maxLength={200} value={text} onInput={take} />}
-    </label>
-  );
+  if (type === "search") return <LimitedField label={label} most={LONGEST_WORDS} search value={text} onText={setText} />;
+  return <label class="field">{label}{type === "date" ? <input type="date" value={text} onInput={take} /> : <input type="number" step="any" value={text} onInput={take} />}</label>;
 }

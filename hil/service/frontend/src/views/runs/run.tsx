@@ -34,13 +34,14 @@ export function RunView({ run: id }: { run: number }): JSX.Element {
   const run = useData<Run>(`/runs/${id}`, AGAIN_MS);
   const name = run.data?.bench ?? "", bench = useData<Bench>(name ? `/benches/${encodeURIComponent(name)}` : null, AGAIN_MS);
   useStopOf(name, !name ? null : isMissing(bench) ? false : bench.loading && !bench.data ? null : true);
-  return <Loaded whole of={run} what={t("run {run}", { run: id })}>{(found) => <Found key={found.state} run={found} bench={bench.data} />}</Loaded>;
+  return <Loaded whole of={run} what={t("run {run}", { run: id })}>{(found) => <Found key={found.id} run={found} bench={bench.data} />}</Loaded>;
 }
 
 function Found({ run, bench }: { run: Run; bench: Bench | null }): JSX.Element {
   const isLive = run.state === "running", isOver = OVER.includes(run.state);
   const recorded = isOver && (run.files ?? []).includes("recording.mcap");
-  const view = useData<View>(isLive || recorded ? `/runs/${run.id}/view` : null, isLive ? AGAIN_MS : 0);
+  // What was seen of a run under way is not its recording. All else stays as it ends: somebody may be typing a note.
+  const path = `/runs/${run.id}/view`, ofLive = useData<View>(isLive ? path : null, AGAIN_MS), ofRecording = useData<View>(recorded ? path : null), view = isLive ? ofLive : ofRecording;
   const live = useLive(isLive ? run.bench : null);
   const state = useStore(live.state), decided = useStore(live.criteria);
   const criteria = isLive ? (decided?.run === run.id ? decided.criteria : []) : view.data?.criteria ?? [];
@@ -55,11 +56,11 @@ function Found({ run, bench }: { run: Run; bench: Bench | null }): JSX.Element {
       <RunFacts run={run} />
       <RunActions run={run} />
       {view.data ? (
-        <Section title={t("Plots")} label="plots"><Board view={view.data} plan={run.plan} bench={isLive ? run.bench : null} /></Section>
+        <Section title={t("Plots")} label="plots"><Board key={run.state} view={view.data} plan={run.plan} bench={isLive ? run.bench : null} /></Section>
       ) : isLive ? <p class="quiet">{t("Nothing has been measured yet.")}</p> : recorded ? <Loaded of={view} what={t("the recording")}>{() => null}</Loaded> : null}
       {isLive || criteria.length ? <Section title={t("Criteria")} label="criteria"><Criteria of={criteria} onSegment={(segment) => { const range = view.data && rangeOfSegment(view.data, segment); if (range) look(range); }} /></Section> : null}
       {view.data ? <Happenings view={view.data} /> : null}
-      <Notes run={run.id} />
+      <Notes key="notes" run={run.id} />
       {isOver ? <Downloads run={run} /> : null}
       {view.data?.evidence ? <Evidence of={view.data.evidence} /> : null}
     </>

@@ -9,10 +9,12 @@ import { moment } from "../../format.ts";
 import { t, tx } from "../../i18n/text.ts";
 import { useMay, useMe } from "../../session.ts";
 import { Moment, Section } from "../../ui/parts.tsx";
+import { isTooLong, LimitedField } from "../../ui/too-long.tsx";
 import { fieldOf, momentOf, nextHour, spanAround, spanProblem } from "./local-times.ts";
 
 const AGAIN_MS = 5000;
 const HOUR_MS = 3_600_000;
+const LONGEST_REASON = 200;
 
 export function Reservations({ bench }: { bench: string }): JSX.Element {
   const path = `/benches/${encodeURIComponent(bench)}/reservations`;
@@ -49,7 +51,7 @@ function Form({ path, onDone }: { path: string; onDone: () => void }): JSX.Eleme
   const [reason, setReason] = useState("");
   const wanted = { begins: momentOf(begins), ends: momentOf(ends), reason: reason.trim() };
   const problem = spanProblem(begins, ends, new Date()), [first, last] = spanAround(new Date());
-  const possible = wanted.begins !== null && wanted.ends !== null && problem === "" && wanted.reason !== "";
+  const possible = wanted.begins !== null && wanted.ends !== null && problem === "" && wanted.reason !== "" && !isTooLong(reason, LONGEST_REASON);
   const reserve = async (event: Event) => {
     event.preventDefault();
     if (await attempt(() => post<Reservation>(path, wanted))) {
@@ -61,7 +63,7 @@ function Form({ path, onDone }: { path: string; onDone: () => void }): JSX.Eleme
     <form onSubmit={(event) => void reserve(event)}>
       <label class="field">{t("From")} <input type="datetime-local" required min={fieldOf(first)} max={fieldOf(last)} value={begins} onInput={(event) => setBegins(event.currentTarget.value)} /></label>
       <label class="field">{t("To")} <input type="datetime-local" required min={begins} max={fieldOf(last)} value={ends} onInput={(event) => setEnds(event.currentTarget.value)} /></label>
-      <label class="field">{t("What for")} <input required maxLength={200} autocomplete="off" value={reason} onInput={(event) => setReason(event.currentTarget.value)} /></label>
+      <LimitedField label={t("What for")} most={LONGEST_REASON} required value={reason} onText={setReason} />
       <button type="submit" class="main" disabled={!possible}>{t("Reserve")}</button>
       <p class="bad" role="status">{problem}</p>
       <p class="quiet">{t("Queued runs of others wait meanwhile. A run under way goes on.")}</p>

@@ -10,6 +10,9 @@ import { duration, figure, wordsOf } from "../../format.ts";
 import { t, tn } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { Facts } from "../../ui/parts.tsx";
+import { LimitedField } from "../../ui/too-long.tsx";
+
+const LONGEST_NAME = 100;
 
 export function Consent({ planned, disabled }: { planned: object; disabled: boolean }): JSX.Element {
   const [rounds, setRounds] = useState("3"), [runs, setRuns] = useState("6"), [busy, setBusy] = useState(false);
@@ -43,7 +46,7 @@ export function Consent({ planned, disabled }: { planned: object; disabled: bool
       <div aria-live="polite">{shown ? <Shown of={shown.envelope} /> : null}</div>
       {shown ? (
         <form class="row" onSubmit={(event) => void begin(event)}>
-          <label class="field">{t("Your name: you consent to these runs")}<input required maxLength={100} autocomplete="name" value={name} onInput={(event) => setName(event.currentTarget.value)} /></label>
+          <LimitedField label={t("Your name: you consent to these runs")} most={LONGEST_NAME} required autocomplete="name" value={name} onText={setName} />
           <button type="submit" class="main">{t("Consent and begin")}</button>
         </form>
       ) : null}

@@ -1,0 +1,28 @@
+// Sentences that the service says, known by their form: the English sentence with its names and figures in braces is both
+// the form and the key of its translation.
+
+import { kindInWords } from "../ui/kinds.ts";
+import { t } from "./text.ts";
+
+export type Said = Record<string, string>;
+export type Phrase = [RegExp, (of: Said) => string];
+
+// What stands in these is a state, a role or a kind of thing.
+const KINDS = ["kind", "state", "role"];
+
+const inWords = (of: Said): Said => Object.fromEntries(Object.entries(of).map(([name, value]) => [name, KINDS.includes(name) ? kindInWords(value) : value]));
+
+const formOf = (text: string): RegExp =>
+  new RegExp(`^${text.split(/(\{\w+\})/).map((piece) => (/^\{\w+\}$/.test(piece) ? `(?<${piece.slice(1, -1)}>.+?)` : piece.replace(/[.*+?^${}()|[\]\\]/g, "\\$&"))).join("")}$`, "s");
+
+// `npm run texts` finds these as it finds those of `t`.
+export const said = (text: string): Phrase => [formOf(text), (of) => t(text, inWords(of))];
+
+// The words of the first form that fits; null if none does.
+export function wordsOf(phrases: readonly Phrase[], text: string): string | null {
+  for (const [form, words] of phrases) {
+    const found = form.exec(text);
+    if (found) return words(found.groups ?? {});
+  }
+  return null;
+}
