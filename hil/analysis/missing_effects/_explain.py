@@ -9,13 +9,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._fit import Point, point_at, with_better_starts
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._noise import proven_noise
 from hil.analysis.missing_effects._odds import Candidate
 from hil.analysis.missing_effects._outcome import Gap, Outcome, Replay
 from hil.analysis.missing_effects._problem import Problem, problem_of
-from hil.analysis.missing_effects._search import Search, search
+from hil.analysis.missing_effects._search import search
 from hil.analysis.missing_effects._series import series_of
 from hil.analysis.missing_effects._spectrum import white
 from hil.analysis.missing_effects._verdict import Judged, judged
@@ -79,7 +80,7 @@ class _Shown:
 
     problem: Problem
     unseen: Problem
-    done: Search
+    done: Candidates
 
     def point(self, problem: Problem, hypothesis: Hypothesis) -> Point:
         """A hypothesis on recordings of a problem, with the starts that suit them best."""

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 
 from hil.analysis.missing_effects._balance import read_numbers, readings
+from hil.analysis.missing_effects._candidates import GROWING, MOST_ROUNDS, Candidates
 from hil.analysis.missing_effects._fit import (
-    ROUNDS,
-    Point,
-    fit,
-    left_to_gain,
     linearised,
     point_at,
     with_better_starts,
@@ -21,24 +18,18 @@ from hil.analysis.missing_effects._fit import (
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._linear import structures
 from hil.analysis.missing_effects._odds import Candidate, remains
-from hil.analysis.missing_effects._orders import count_of_orders, turned_with
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import (
     best_by_name,
-    may_join,
     promised_by,
     promises,
 )
-from hil.analysis.missing_effects._spectrum import white
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 
 HALF = 0.5  # of what stays without it a name must take off
 _TRIED = 8  # hypotheses that a step begins with, the most promising ones; half of them go on each time
 _RIVALS = 2  # of a step are fitted to their end
-_SETTLED = 0.1  # growth of log likelihood between rounds that ends them
-_GROWING = 1.0  # above it a fit goes on after its usual rounds: what it lacks would look like another name
-_MOST_ROUNDS = 4 * ROUNDS
 _BESIDE = 0.3  # of an effect's first number: where an optional one in the same unit begins
 _ASIDE = (
     -0.02,
@@ -47,119 +38,13 @@ _ASIDE = (
 _MOST_NAMES = 4
 
 
-@dataclass
-class Search:
-    """All hypotheses that were fitted, the best of each set of names, and what they are weighed by."""
-
-    problem: Problem
-    values: float = 2.0  # independent ones that the data hold, by the best hypothesis so far
-    found: dict[tuple[str, ...], Candidate] = field(default_factory=dict)
-
-    @property
-    def best(self) -> Candidate:
-        """The hypothesis with the highest score."""
-        return max(self.found.values(), key=self.score)
-
-    def score(self, candidate: Candidate) -> float:
-        """Of a candidate, at what the data hold."""
-        return candidate.score(self.values)
-
-    def cost_of_a_number(self, candidate: Candidate) -> float:
-        """What one more free number must let log L grow by."""
-        return self.score(candidate) - self.score(replace(candidate, free=candidate.free + 1))
-
-    def may_gain(self, candidate: Candidate) -> bool:
-        """Whether one more name could pay, if it left nothing but noise."""
-        powers = candidate.point.powers(self.problem)
-        least = math.log(candidate.known) + self.cost_of_a_number(candidate)
-        return powers.most_to_gain(self.problem.noise) > least
-
-    def go_on_from(self, best: Candidate) -> None:
-        """Weigh errors by what the best hypothesis so far leaves."""
-        powers = best.point.powers(self.problem)
-        self.values = powers.values(self.problem.noise)
-        turned = turned_with(self.problem, best.point)
-        self.problem = turned.weighed_by(powers.spectrum(self.problem.noise))
-
-    def weighed_as(self, candidate: Candidate) -> Problem:
-        """The problem, errors weighed by the spectrum that a candidate leaves itself."""
-        powers = candidate.point.powers(self.problem)
-        return self.problem.weighed_by(powers.spectrum(self.problem.noise))
-
-    def promised(self, candidate: Candidate) -> float:
-        """Growth of log L that its numbers may still bring a candidate, weighed by what it leaves.
-
-        Twice the first order: a misfit that shrinks weighs what stays the more.
-        """
-        return 2.0 * left_to_gain(linearised(self.weighed_as(candidate), candidate.point))
-
-    def fitted(
-        self,
-        hypothesis: Hypothesis,
-        near: Candidate | None,
-        rounds: int = ROUNDS,
-        held: frozenset[str] = frozenset(),
-    ) -> Candidate:
-        """Fit a hypothesis, weighed by the spectrum that it leaves itself; the best of its names is kept.
-
-        Args:
-            held: numbers of the base that stay what they are.
-        """
-        goes_on = near is not None and near.point.hypothesis is hypothesis
-        point = near.point if near and goes_on else self._begun(hypothesis, near)
-        best = before = self.judged(point)
-        problem = self.problem
-        if goes_on:
-            problem = problem.weighed_by(point.powers(problem).spectrum(problem.noise))
-        elif hypothesis.kind == "rigid":  # slow errors of a mass are friction; a chain's bend its resonances
-            problem = problem.weighed_by(white(problem.noise, problem.rate_hz))
-        for number in range(rounds if rounds < ROUNDS else _MOST_ROUNDS):
-            # slow misfit would trade a dead time for anything, until errors are weighed by their colour
-            point = fit(problem, point, held if number or goes_on else held | {"torque_delay"})
-            after = self.judged(point)
-            best = max(best, after, key=self.score)
-            growth = after.log_likelihood - before.log_likelihood
-            if abs(growth) < _SETTLED or (number >= ROUNDS - 1 and growth < _GROWING):
-                break
-            before = after
-            problem = self.problem.weighed_by(point.powers(problem).spectrum(problem.noise))
-        key = tuple(sorted(best.names))
-        self.found[key] = max(self.found.get(key, best), best, key=self.score)
-        return best
-
-    def _begun(self, hypothesis: Hypothesis, near: Candidate | None) -> Point:
-        """A hypothesis as it is, from starts of another; as measured where it sticks and these may be off."""
-        if near is None:
-            return point_at(self.problem, hypothesis)
-        point = point_at(self.problem, hypothesis, near.point.starts)
-        if hypothesis.kind != "rigid" or not any(EFFECTS[use.id].law.dry for use in hypothesis.terms):
-            return point
-        fresh = with_better_starts(self.problem, point_at(self.problem, hypothesis))
-        return max(point, fresh, key=lambda one: self.judged(one).log_likelihood)
-
-    def at(self, hypothesis: Hypothesis, near: Candidate) -> Candidate:
-        """A hypothesis as it is, from the starts of another."""
-        return self.judged(point_at(self.problem, hypothesis, near.point.starts))
-
-    def judged(self, point: Point) -> Candidate:
-        """A fitted point with what it is weighed by."""
-        hypothesis = point.hypothesis
-        known = sum(may_join(effect, Hypothesis(hypothesis.base, {})) for effect in EFFECTS.values())
-        coordinates = self.problem.coordinates(hypothesis)
-        prior = -0.5 * float(np.sum(self.problem.prior(coordinates, np.zeros(len(coordinates))) ** 2))
-        windows = point.powers(self.problem).log_likelihood(self.problem.noise)
-        sides = [side for use in hypothesis.terms if (side := EFFECTS[use.id].law.follows)]
-        places = sum(math.log(max(count_of_orders(self.problem, side), 1.0)) for side in sides)
-        return Candidate(point, windows, len(coordinates), known, prior, places)
-
-
-def search(problem: Problem, show: Callable[[str], None]) -> Search:
+def search(problem: Problem, show: Callable[[str], None]) -> Candidates:
     """Fit the numbers alone, then grow and prune sets of effects until noise is left or none pays."""
     show("numbers alone")
     start, *linear = _starts(problem)
     started = with_better_starts(problem, point_at(problem, start))
     spectrum = started.powers(problem).spectrum(problem.noise)
-    done = Search(replace(problem, spectrum=spectrum))
+    done = Candidates(replace(problem, spectrum=spectrum))
     best = done.fitted(start, None)
     best = done.fitted(best.point.hypothesis, best)
     done.go_on_from(best)
@@ -179,11 +64,11 @@ def search(problem: Problem, show: Callable[[str], None]) -> Search:
     return done
 
 
-def _without_chance(done: Search, grown: Candidate) -> Candidate:
+def _without_chance(done: Candidates, grown: Candidate) -> Candidate:
     """A grown hypothesis, or the one before it where that does as well from the numbers of the grown one.
 
-    Beside an abrupt effect the misfit jumps with every number, and a name that takes nothing off may lead a fit
-    over a jump.
+    Beside an abrupt effect the misfit jumps with every number, and a name that takes nothing off may lead a
+    fit over a jump.
     """
     *before, _ = grown.point.hypothesis.terms
     if not any(EFFECTS[use.id].abrupt for use in before):
@@ -192,13 +77,13 @@ def _without_chance(done: Search, grown: Candidate) -> Candidate:
     return max(grown, fewer, key=done.score)
 
 
-def _with_better_angles(done: Search, best: Candidate) -> Candidate:
+def _with_better_angles(done: Candidates, best: Candidate) -> Candidate:
     """Fit a ripple to angles as they are better known after it, while its likelihood grows."""
-    for _ in range(_MOST_ROUNDS):
+    for _ in range(MOST_ROUNDS):
         better = done.fitted(best.point.hypothesis, best)
         growth = better.log_likelihood - best.log_likelihood
         best = better
-        if growth < _GROWING:
+        if growth < GROWING:
             break
         done.go_on_from(best)
     return best
@@ -223,7 +108,7 @@ def _starts(problem: Problem) -> list[Hypothesis]:
 
 
 def _grown(
-    done: Search, best: Candidate, linear: Sequence[Hypothesis], show: Callable[[str], None]
+    done: Candidates, best: Candidate, linear: Sequence[Hypothesis], show: Callable[[str], None]
 ) -> Candidate | None:
     """The best hypothesis with one more effect; None where no effect promises more than it costs.
 
@@ -252,7 +137,7 @@ def is_loss(use: EffectUse) -> bool:
 
 
 def _best_of(
-    done: Search,
+    done: Candidates,
     best: Candidate,
     suggested: Sequence[tuple[Hypothesis, float]],
     show: Callable[[str], None],
@@ -281,7 +166,7 @@ def _best_of(
     return max(ended, key=done.score, default=None)
 
 
-def _caught_up(done: Search, tried: Sequence[Candidate]) -> list[Candidate]:
+def _caught_up(done: Candidates, tried: Sequence[Candidate]) -> list[Candidate]:
     """After rounds more as long as their numbers promise more than a candidate is behind the best."""
     for _ in range(_RIVALS):
         ahead = max((done.score(one) for one in tried), default=0.0)
@@ -295,7 +180,7 @@ def _caught_up(done: Search, tried: Sequence[Candidate]) -> list[Candidate]:
     return [*tried]
 
 
-def _best_of_each_name(done: Search, tried: Sequence[Candidate]) -> list[Candidate]:
+def _best_of_each_name(done: Candidates, tried: Sequence[Candidate]) -> list[Candidate]:
     """The likeliest of each set of names, best first: starts of one name are no rivals."""
     found: dict[tuple[str, ...], Candidate] = {}
     for one in sorted(tried, key=done.score, reverse=True):
@@ -303,7 +188,7 @@ def _best_of_each_name(done: Search, tried: Sequence[Candidate]) -> list[Candida
     return list(found.values())
 
 
-def _suggested(done: Search, best: Candidate) -> list[tuple[Hypothesis, float]]:
+def _suggested(done: Candidates, best: Candidate) -> list[tuple[Hypothesis, float]]:
     """Hypotheses with one more effect, each with the growth of log L that it promises.
 
     Those that the latent torque names (which promises no number, so they are all tried), and those that
@@ -328,7 +213,7 @@ def _suggested(done: Search, best: Candidate) -> list[tuple[Hypothesis, float]]:
     return sorted(found, key=lambda one: -one[1])
 
 
-def _beside_the_base(done: Search, best: Candidate, least: float) -> list[tuple[Hypothesis, float]]:
+def _beside_the_base(done: Candidates, best: Candidate, least: float) -> list[tuple[Hypothesis, float]]:
     """Names beside the base's numbers as they came, where these alone moved for more than a name costs.
 
     A gain or a lag of a sensor may look like three numbers that are wrong: from there a fit would not come
@@ -353,12 +238,12 @@ def _beside_the_base(done: Search, best: Candidate, least: float) -> list[tuple[
     return found
 
 
-def _likelier(done: Search, near: Candidate, *starts: Hypothesis) -> Hypothesis:
+def _likelier(done: Candidates, near: Candidate, *starts: Hypothesis) -> Hypothesis:
     """Of hypotheses as they are, from where recordings begin in another."""
     return max(starts, key=lambda one: done.score(done.at(one, near)))
 
 
-def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candidate:
+def _opened(done: Candidates, best: Candidate, show: Callable[[str], None]) -> Candidate:
     """With those optional numbers of its last effect that earn their place."""
     index = len(best.names) - 1
     for parameter in EFFECTS[best.point.hypothesis.terms[index].id].parameters:
@@ -398,7 +283,7 @@ def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candi
     return best
 
 
-def _pruned(done: Search, best: Candidate) -> Candidate:
+def _pruned(done: Candidates, best: Candidate) -> Candidate:
     """Without those effects that later ones made needless."""
     for index in reversed(range(len(best.names) - 1)):
         fewer = done.fitted(best.point.hypothesis.without(index), best)

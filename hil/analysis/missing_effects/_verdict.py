@@ -12,23 +12,23 @@ make up a name that takes off less than itself.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._constancy import constancy
 from hil.analysis.missing_effects._curve import curves_of
 from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised, point_at
-from hil.analysis.missing_effects._hypothesis import TOLERANCE, Hypothesis
+from hil.analysis.missing_effects._hypothesis import Hypothesis
+from hil.analysis.missing_effects._mismatch import as_the_base_has, is_far, mismatches, numbers_of
 from hil.analysis.missing_effects._noise import rounding_step
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains, weights_of
 from hil.analysis.missing_effects._orders import PERIODS, turns
 from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Replay, Verdict
 from hil.analysis.missing_effects._problem import Problem
-from hil.analysis.missing_effects._screen import NUMBERS
-from hil.analysis.missing_effects._search import HALF, Search, is_loss
-from hil.analysis.missing_effects._spectrum import RIGHT_TO
+from hil.analysis.missing_effects._search import HALF
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
@@ -49,7 +49,7 @@ class Judged:
     """
 
     asked: Model
-    done: Search
+    done: Candidates
     left: Callable[[Candidate], Array]
     gaps: Callable[[Candidate], tuple[dict[str, Gap], dict[str, Gap]]]
     fitted: tuple[Replay, ...]
@@ -59,7 +59,7 @@ class Judged:
 def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     """The outcome of a search."""
     done = of.done
-    as_the_base = _as_the_base(done, done.best)
+    as_the_base = as_the_base_has(done, done.best)
     best, shares = _worth_telling(of, done.best)
     _swapped(done, best)
     candidates = list(done.found.values())
@@ -71,10 +71,10 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     for index, use in enumerate(best.point.hypothesis.terms):
         named = _named(best, index, use, at, candidates, weights, rivals, shares[index])
         (effects if named.confidence >= HALF else doubtful).append(named)
-    numbers = _numbers(at, of.asked)
-    far = _is_far(numbers, done)
+    numbers = numbers_of(at, of.asked)
+    far = is_far(numbers, done)
     if not far and done.problem.is_noise(best.point.errors):  # what has no name bends numbers as well
-        effects += _mismatches(done, numbers, best, as_the_base)
+        effects += mismatches(done, numbers, best, as_the_base)
     if done.problem.is_noise(best.point.errors):
         effects += _roundings(done, float(weights[candidates.index(best)]))
     something_else = _remains(of, done.found[()], best) if best.names else 0.0
@@ -90,36 +90,6 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
         curves_of(best.point.hypothesis, done.problem.series), notes, seconds,
         done.problem.noise * np.sqrt(done.problem.series[0].block), at.drawn(_DRAWN), of.fitted, of.held_out,
     )  # fmt: skip
-
-
-def _as_the_base(done: Search, best: Candidate) -> frozenset[str]:
-    """Numbers that are effects by themselves and moved, though the data allow what the base says as well.
-
-    A dead time beside friction that sticks has many minima, and a rigid axle shows it to a sample. So each
-    is held where the base has it, once with all optional numbers and once with each of them left out; in
-    hypotheses that the data do not tell from the best one as well.
-    """
-    hypothesis = best.point.hypothesis
-    found = []
-    for name in NUMBERS.values() if best.names else ():
-        base = done.problem.model.parameters.get(name, 0.0)
-        if base <= 0.0 or abs(hypothesis.numbers[name] - base) <= _tolerance(name, base, done):
-            continue
-        alike = [one for one in done.found.values() if done.score(one) > done.score(best) - ALIKE]
-        begins = [_with_number(one.point.hypothesis, name, base) for one in (best, *alike)]
-        fewer = [
-            begins[0].closed(index, optional)
-            for index, opened in enumerate(hypothesis.opened)
-            for optional in sorted(opened)
-        ]
-        ended = [done.fitted(one, best, held=frozenset({name})) for one in (*begins, *fewer)]
-        if max(done.score(one) for one in ended) > done.score(best) - ALIKE:
-            found.append(name)
-    return frozenset(found)
-
-
-def _with_number(hypothesis: Hypothesis, name: str, value: float) -> Hypothesis:
-    return replace(hypothesis, numbers={**hypothesis.numbers, name: value})
 
 
 def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, list[float]]:
@@ -140,7 +110,7 @@ def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, list[float]]
     return best, []
 
 
-def _is_line(done: Search, at: Linearised, index: int) -> bool:
+def _is_line(done: Candidates, at: Linearised, index: int) -> bool:
     """Whether an effect follows no angle, or recordings hold periods of its order and tell it to half a one.
 
     A ripple of less than that takes up whatever is slow.
@@ -154,7 +124,7 @@ def _is_line(done: Search, at: Linearised, index: int) -> bool:
     return sure and float(use.values["order"]) * whole >= PERIODS
 
 
-def _swapped(done: Search, best: Candidate) -> None:
+def _swapped(done: Candidates, best: Candidate) -> None:
     """Far from noise, fit the best hypothesis with each name in turn replaced by others.
 
     A forward search finds a name beside those before it; names that could stand in its place must be given
@@ -179,7 +149,7 @@ def _swapped(done: Search, best: Candidate) -> None:
             done.fitted(fewer.with_term(other.terms[at], other.opened[at]), best)
 
 
-def _without(done: Search, best: Candidate, index: int) -> Candidate:
+def _without(done: Candidates, best: Candidate, index: int) -> Candidate:
     key = tuple(sorted(name for at, name in enumerate(best.names) if at != index))
     return done.found.get(key) or done.fitted(best.point.hypothesis.without(index), best)
 
@@ -227,7 +197,7 @@ def _remains(of: Judged, before: Candidate, after: Candidate) -> float:
     return remains(had, has, problem.noise**2, problem.slow_noise)
 
 
-def _roundings(done: Search, weight: float) -> list[Named]:
+def _roundings(done: Candidates, weight: float) -> list[Named]:
     """Channels whose noise is the distance of their readings, where nothing else is missing."""
     known = {
         use.values.get("channel") for use in done.problem.model.effects if use.id == "sensor_quantization"
@@ -242,7 +212,7 @@ def _roundings(done: Search, weight: float) -> list[Named]:
     return found
 
 
-def _alike(done: Search, best: Candidate, candidates: Sequence[Candidate]) -> dict[str, tuple[str, ...]]:
+def _alike(done: Candidates, best: Candidate, candidates: Sequence[Candidate]) -> dict[str, tuple[str, ...]]:
     """Of each name of the best hypothesis: the names that could take its place without the data telling."""
     problem = done.weighed_as(best)
     found: dict[str, tuple[str, ...]] = {}
@@ -276,7 +246,7 @@ def _apart(problem: Problem, one: Point, other: Point) -> float:
     )
 
 
-def _late_outputs(done: Search, rest: Hypothesis, use: EffectUse) -> Hypothesis | None:
+def _late_outputs(done: Candidates, rest: Hypothesis, use: EffectUse) -> Hypothesis | None:
     """All outputs late alike in place of a late torque: in a linear axle the two are one."""
     if use.id not in _LATE:
         return None
@@ -309,83 +279,3 @@ def _others(of: Judged, best: Candidate, candidates: Sequence[Candidate], weight
             model = one.point.hypothesis.model()
             found.append(Named(use, weight * share, {}, (), EFFECTS[use.id].shown_by, model))
     return sorted(found, key=lambda one: -one.confidence)
-
-
-def _numbers(at: Linearised, asked: Model) -> dict[str, tuple[float, float, float]]:
-    """Numbers of the base: as it came, as found, standard error."""
-    return {
-        name: (float(asked.parameters[name]), float(value), at.standard_error(-1, name))
-        for name, value in at.point.hypothesis.numbers.items()
-    }
-
-
-def _off(name: str, numbers: Mapping[str, tuple[float, float, float]], done: Search) -> tuple[float, float]:
-    """How far a number moved and how sure that is, both in tolerances."""
-    base, found, error = numbers[name]
-    tolerance = _tolerance(name, base, done)
-    return abs(found - base) / tolerance, error / tolerance
-
-
-def _tolerance(name: str, base: float, done: Search) -> float:
-    """Of a number of the base, in its unit."""
-    size = abs(base) or done.problem.scales[name]  # only numbers that have a scale may be zero
-    return float(done.problem.model.tolerance.get(name, TOLERANCE) * size)
-
-
-def _is_far(numbers: Mapping[str, tuple[float, float, float]], done: Search) -> bool:
-    """Whether most of the numbers that the data fix are not what the base says.
-
-    The prior alone leaves 0.7 of a tolerance.
-    """
-    known = [_off(name, numbers, done) for name in numbers]
-    fixed = [moved for moved, error in known if error < HALF]
-    return len(fixed) > 1 and sum(moved > 1.0 for moved in fixed) > HALF * len(fixed)
-
-
-def _mismatches(
-    done: Search,
-    numbers: Mapping[str, tuple[float, float, float]],
-    best: Candidate,
-    as_the_base: frozenset[str],
-) -> list[Named]:
-    """Numbers that are wrong by more than their tolerance and doubt, each with the probability of that.
-
-    Beside an effect, which bends numbers as well, those that are effects by themselves: a dead time, a drag.
-    One that moves no channel by more than what no model is right to says nothing.
-    """
-    from scipy.special import ndtr
-
-    found = []
-    for name, (_, value, error) in numbers.items():
-        if best.names and (name in as_the_base or not _stands_beside(name, best, done.problem.model)):
-            continue
-        moved, doubt = _off(name, numbers, done)
-        sure = float(ndtr((moved - 1.0) / max(doubt, 1e-12)))
-        if sure >= HALF and moved - 1.0 > doubt and _shows(done.problem, best.point, name):
-            found.append(
-                Named(
-                    EffectUse("parameter_mismatch", {"parameter": name, "value": value}),
-                    sure,
-                    {"value": error},
-                )
-            )
-    return found
-
-
-def _stands_beside(name: str, best: Candidate, base: Model) -> bool:
-    """Whether a number that moved is an effect of its own beside others: a dead time, a drag.
-
-    A drag beside another loss is one where the base has none: what a friction's law gets wrong bends it.
-    """
-    loses = any(is_loss(use) for use in best.point.hypothesis.terms)
-    bent = name == NUMBERS["viscous_drag"] and loses and base.parameters[name] > 0.0
-    return name in NUMBERS.values() and not bent
-
-
-def _shows(problem: Problem, point: Point, name: str) -> bool:
-    """Whether a number of the base put back moves a channel by more than what no model is right to."""
-    base = problem.model.parameters[name]
-    back = point_at(problem, _with_number(point.hypothesis, name, base), point.starts)
-    pairs = zip(back.errors, point.errors, strict=True)
-    moved = problem.mean_square([one - other for one, other in pairs])
-    return bool(np.nanmax(moved / np.maximum(problem.signal, 1e-300)) > RIGHT_TO**2)

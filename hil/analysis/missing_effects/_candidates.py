@@ -1,0 +1,136 @@
+"""All hypotheses that were fitted, and how one more is fitted and judged."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from hil.analysis.missing_effects._fit import (
+    ROUNDS,
+    Point,
+    fit,
+    left_to_gain,
+    linearised,
+    point_at,
+    with_better_starts,
+)
+from hil.analysis.missing_effects._hypothesis import Hypothesis
+from hil.analysis.missing_effects._odds import Candidate
+from hil.analysis.missing_effects._orders import count_of_orders, turned_with
+from hil.analysis.missing_effects._problem import Problem
+from hil.analysis.missing_effects._screen import may_join
+from hil.analysis.missing_effects._spectrum import white
+from hil.core.effects import EFFECTS
+
+_SETTLED = 0.1  # growth of log likelihood between rounds that ends them
+GROWING = 1.0
+"""Growth of log likelihood above which a fit goes on: what it lacks would look like another name."""
+MOST_ROUNDS = 4 * ROUNDS
+
+
+@dataclass
+class Candidates:
+    """All hypotheses that were fitted, the best of each set of names, and what they are weighed by."""
+
+    problem: Problem
+    values: float = 2.0  # independent ones that the data hold, by the best hypothesis so far
+    found: dict[tuple[str, ...], Candidate] = field(default_factory=dict)
+
+    @property
+    def best(self) -> Candidate:
+        """The hypothesis with the highest score."""
+        return max(self.found.values(), key=self.score)
+
+    def score(self, candidate: Candidate) -> float:
+        """Of a candidate, at what the data hold."""
+        return candidate.score(self.values)
+
+    def cost_of_a_number(self, candidate: Candidate) -> float:
+        """What one more free number must let log L grow by."""
+        return self.score(candidate) - self.score(replace(candidate, free=candidate.free + 1))
+
+    def may_gain(self, candidate: Candidate) -> bool:
+        """Whether one more name could pay, if it left nothing but noise."""
+        powers = candidate.point.powers(self.problem)
+        least = math.log(candidate.known) + self.cost_of_a_number(candidate)
+        return powers.most_to_gain(self.problem.noise) > least
+
+    def go_on_from(self, best: Candidate) -> None:
+        """Weigh errors by what the best hypothesis so far leaves."""
+        powers = best.point.powers(self.problem)
+        self.values = powers.values(self.problem.noise)
+        turned = turned_with(self.problem, best.point)
+        self.problem = turned.weighed_by(powers.spectrum(self.problem.noise))
+
+    def weighed_as(self, candidate: Candidate) -> Problem:
+        """The problem, errors weighed by the spectrum that a candidate leaves itself."""
+        powers = candidate.point.powers(self.problem)
+        return self.problem.weighed_by(powers.spectrum(self.problem.noise))
+
+    def promised(self, candidate: Candidate) -> float:
+        """Growth of log L that its numbers may still bring a candidate, weighed by what it leaves.
+
+        Twice the first order: a misfit that shrinks weighs what stays the more.
+        """
+        return 2.0 * left_to_gain(linearised(self.weighed_as(candidate), candidate.point))
+
+    def fitted(
+        self,
+        hypothesis: Hypothesis,
+        near: Candidate | None,
+        rounds: int = ROUNDS,
+        held: frozenset[str] = frozenset(),
+    ) -> Candidate:
+        """Fit a hypothesis, weighed by the spectrum that it leaves itself; the best of its names is kept.
+
+        Args:
+            held: numbers of the base that stay what they are.
+        """
+        goes_on = near is not None and near.point.hypothesis is hypothesis
+        point = near.point if near and goes_on else self._begun(hypothesis, near)
+        best = before = self.judged(point)
+        problem = self.problem
+        if goes_on:
+            problem = problem.weighed_by(point.powers(problem).spectrum(problem.noise))
+        elif hypothesis.kind == "rigid":  # slow errors of a mass are friction; a chain's bend its resonances
+            problem = problem.weighed_by(white(problem.noise, problem.rate_hz))
+        for number in range(rounds if rounds < ROUNDS else MOST_ROUNDS):
+            # slow misfit would trade a dead time for anything, until errors are weighed by their colour
+            point = fit(problem, point, held if number or goes_on else held | {"torque_delay"})
+            after = self.judged(point)
+            best = max(best, after, key=self.score)
+            growth = after.log_likelihood - before.log_likelihood
+            if abs(growth) < _SETTLED or (number >= ROUNDS - 1 and growth < GROWING):
+                break
+            before = after
+            problem = self.problem.weighed_by(point.powers(problem).spectrum(problem.noise))
+        key = tuple(sorted(best.names))
+        self.found[key] = max(self.found.get(key, best), best, key=self.score)
+        return best
+
+    def _begun(self, hypothesis: Hypothesis, near: Candidate | None) -> Point:
+        """A hypothesis as it is, from starts of another; as measured where it sticks and these may be off."""
+        if near is None:
+            return point_at(self.problem, hypothesis)
+        point = point_at(self.problem, hypothesis, near.point.starts)
+        if hypothesis.kind != "rigid" or not any(EFFECTS[use.id].law.dry for use in hypothesis.terms):
+            return point
+        fresh = with_better_starts(self.problem, point_at(self.problem, hypothesis))
+        return max(point, fresh, key=lambda one: self.judged(one).log_likelihood)
+
+    def at(self, hypothesis: Hypothesis, near: Candidate) -> Candidate:
+        """A hypothesis as it is, from the starts of another."""
+        return self.judged(point_at(self.problem, hypothesis, near.point.starts))
+
+    def judged(self, point: Point) -> Candidate:
+        """A fitted point with what it is weighed by."""
+        hypothesis = point.hypothesis
+        known = sum(may_join(effect, Hypothesis(hypothesis.base, {})) for effect in EFFECTS.values())
+        coordinates = self.problem.coordinates(hypothesis)
+        prior = -0.5 * float(np.sum(self.problem.prior(coordinates, np.zeros(len(coordinates))) ** 2))
+        windows = point.powers(self.problem).log_likelihood(self.problem.noise)
+        sides = [side for use in hypothesis.terms if (side := EFFECTS[use.id].law.follows)]
+        places = sum(math.log(max(count_of_orders(self.problem, side), 1.0)) for side in sides)
+        return Candidate(point, windows, len(coordinates), known, prior, places)

@@ -1,0 +1,131 @@
+"""Numbers of the base that moved: which are effects by themselves, and whether most were far off."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from hil.analysis.missing_effects._candidates import Candidates
+from hil.analysis.missing_effects._fit import Linearised, Point, point_at
+from hil.analysis.missing_effects._hypothesis import TOLERANCE, Hypothesis
+from hil.analysis.missing_effects._odds import ALIKE, Candidate
+from hil.analysis.missing_effects._outcome import Named
+from hil.analysis.missing_effects._problem import Problem
+from hil.analysis.missing_effects._screen import NUMBERS
+from hil.analysis.missing_effects._search import HALF, is_loss
+from hil.analysis.missing_effects._spectrum import RIGHT_TO
+from hil.core.model import EffectUse, Model
+
+
+def as_the_base_has(done: Candidates, best: Candidate) -> frozenset[str]:
+    """Numbers that are effects by themselves and moved, though the data allow what the base says as well.
+
+    A dead time beside friction that sticks has many minima, and a rigid axle shows it to a sample. So each
+    is held where the base has it, once with all optional numbers and once with each of them left out; in
+    hypotheses that the data do not tell from the best one as well.
+    """
+    hypothesis = best.point.hypothesis
+    found = []
+    for name in NUMBERS.values() if best.names else ():
+        base = done.problem.model.parameters.get(name, 0.0)
+        if base <= 0.0 or abs(hypothesis.numbers[name] - base) <= _tolerance(name, base, done):
+            continue
+        alike = [one for one in done.found.values() if done.score(one) > done.score(best) - ALIKE]
+        begins = [_with_number(one.point.hypothesis, name, base) for one in (best, *alike)]
+        fewer = [
+            begins[0].closed(index, optional)
+            for index, opened in enumerate(hypothesis.opened)
+            for optional in sorted(opened)
+        ]
+        ended = [done.fitted(one, best, held=frozenset({name})) for one in (*begins, *fewer)]
+        if max(done.score(one) for one in ended) > done.score(best) - ALIKE:
+            found.append(name)
+    return frozenset(found)
+
+
+def numbers_of(at: Linearised, asked: Model) -> dict[str, tuple[float, float, float]]:
+    """Numbers of the base: as it came, as found, standard error."""
+    return {
+        name: (float(asked.parameters[name]), float(value), at.standard_error(-1, name))
+        for name, value in at.point.hypothesis.numbers.items()
+    }
+
+
+def is_far(numbers: Mapping[str, tuple[float, float, float]], done: Candidates) -> bool:
+    """Whether most of the numbers that the data fix are not what the base says.
+
+    The prior alone leaves 0.7 of a tolerance.
+    """
+    known = [_off(name, numbers, done) for name in numbers]
+    fixed = [moved for moved, error in known if error < HALF]
+    return len(fixed) > 1 and sum(moved > 1.0 for moved in fixed) > HALF * len(fixed)
+
+
+def mismatches(
+    done: Candidates,
+    numbers: Mapping[str, tuple[float, float, float]],
+    best: Candidate,
+    as_the_base: frozenset[str],
+) -> list[Named]:
+    """Numbers that are wrong by more than their tolerance and doubt, each with the probability of that.
+
+    Beside an effect, which bends numbers as well, those that are effects by themselves: a dead time, a drag.
+    One that moves no channel by more than what no model is right to says nothing.
+    """
+    from scipy.special import ndtr
+
+    found = []
+    for name, (_, value, error) in numbers.items():
+        if best.names and (name in as_the_base or not _stands_beside(name, best, done.problem.model)):
+            continue
+        moved, doubt = _off(name, numbers, done)
+        sure = float(ndtr((moved - 1.0) / max(doubt, 1e-12)))
+        if sure >= HALF and moved - 1.0 > doubt and _shows(done.problem, best.point, name):
+            found.append(
+                Named(
+                    EffectUse("parameter_mismatch", {"parameter": name, "value": value}),
+                    sure,
+                    {"value": error},
+                )
+            )
+    return found
+
+
+def _off(
+    name: str, numbers: Mapping[str, tuple[float, float, float]], done: Candidates
+) -> tuple[float, float]:
+    """How far a number moved and how sure that is, both in tolerances."""
+    base, found, error = numbers[name]
+    tolerance = _tolerance(name, base, done)
+    return abs(found - base) / tolerance, error / tolerance
+
+
+def _tolerance(name: str, base: float, done: Candidates) -> float:
+    """Of a number of the base, in its unit."""
+    size = abs(base) or done.problem.scales[name]  # only numbers that have a scale may be zero
+    return float(done.problem.model.tolerance.get(name, TOLERANCE) * size)
+
+
+def _stands_beside(name: str, best: Candidate, base: Model) -> bool:
+    """Whether a number that moved is an effect of its own beside others: a dead time, a drag.
+
+    A drag beside another loss is one where the base has none: what a friction's law gets wrong bends it.
+    """
+    loses = any(is_loss(use) for use in best.point.hypothesis.terms)
+    bent = name == NUMBERS["viscous_drag"] and loses and base.parameters[name] > 0.0
+    return name in NUMBERS.values() and not bent
+
+
+def _shows(problem: Problem, point: Point, name: str) -> bool:
+    """Whether a number of the base put back moves a channel by more than what no model is right to."""
+    base = problem.model.parameters[name]
+    back = point_at(problem, _with_number(point.hypothesis, name, base), point.starts)
+    pairs = zip(back.errors, point.errors, strict=True)
+    moved = problem.mean_square([one - other for one, other in pairs])
+    return bool(np.nanmax(moved / np.maximum(problem.signal, 1e-300)) > RIGHT_TO**2)
+
+
+def _with_number(hypothesis: Hypothesis, name: str, value: float) -> Hypothesis:
+    return replace(hypothesis, numbers={**hypothesis.numbers, name: value})
