@@ -33,9 +33,9 @@ def as_the_base_has(done: Candidates, best: Candidate) -> frozenset[str]:
         if base <= 0.0 or abs(hypothesis.numbers[name] - base) <= _tolerance(name, base, done):
             continue
         alike = [one for one in done.found.values() if done.score(one) > done.score(best) - ALIKE]
-        begins = [_with_number(one.point.hypothesis, name, base) for one in (best, *alike)]
+        begins = [_with_number(one.point.hypothesis, name, base) for one in alike]
         fewer = [
-            begins[0].closed(index, optional)
+            _with_number(hypothesis, name, base).closed(index, optional)
             for index, opened in enumerate(hypothesis.opened)
             for optional in sorted(opened)
         ]

@@ -38,6 +38,7 @@ Array = npt.NDArray[np.float64]
 _LATE = {"actuator_lag": ("sensor_lag", "time_constant_s"), "dead_time": ("channel_skew", "delay_s")}
 _RIVALS = 3  # names that may take the place of another
 _SHOWN = 5  # alternatives
+_LAW = 0.02  # of what an effect takes off is right in no law that bends
 _DRAWN = 40  # models, by which a figure of the new model is known
 
 
@@ -59,7 +60,7 @@ class Judged:
 def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     """The outcome of a search."""
     done = of.done
-    as_the_base = as_the_base_has(done, done.best)
+    as_the_base = as_the_base_has(done, done.best) if _may_be_off(of, done.best) else frozenset[str]()
     best, shares = _worth_telling(of, done.best)
     _swapped(done, best)
     candidates = list(done.found.values())
@@ -73,7 +74,7 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
         (effects if named.confidence >= HALF else doubtful).append(named)
     numbers = numbers_of(at, of.asked)
     far = is_far(numbers, done)
-    if not far and done.problem.is_noise(best.point.errors):  # what has no name bends numbers as well
+    if not far and done.problem.is_noise(best.point.errors):
         effects += mismatches(done, numbers, best, as_the_base)
     if done.problem.is_noise(best.point.errors):
         effects += _roundings(done, float(weights[candidates.index(best)]))
@@ -92,12 +93,20 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     )  # fmt: skip
 
 
+def _may_be_off(of: Judged, best: Candidate) -> bool:
+    """Whether single numbers of the base may be wrong: what has no name bends them, a far base has none."""
+    at = linearised(of.done.weighed_as(best), best.point)
+    return of.done.problem.is_noise(best.point.errors) and not is_far(numbers_of(at, of.asked), of.done)
+
+
 def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, list[float]]:
     """Without effects that take off less than half of what stays without them; shares of the others."""
     while best.names:
         at = linearised(of.done.weighed_as(best), best.point)
+        fewer = [_without(of.done, best, index) for index in range(len(best.names))]
+        wrong = _wrong_by_laws(of, best, fewer)
         shares = [
-            (1.0 - _remains(of, _without(of.done, best, index), best))
+            (1.0 - _remains(of, fewer[index], best, wrong))
             * constancy(of.done.problem, at, index, of.done.cost_of_a_number(best))
             if _is_line(of.done, at, index)
             else 0.0
@@ -108,6 +117,18 @@ def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, list[float]]
             return best, shares
         best = _without(of.done, best, least)
     return best, []
+
+
+def _wrong_by_laws(of: Judged, best: Candidate, fewer: Sequence[Candidate]) -> Array:
+    """Variance that may stay in each channel, (3,), as no law is right to the last digit; linear ones are."""
+    left = of.left(best)
+    bent = [one for use, one in zip(best.point.hypothesis.terms, fewer, strict=True) if not _is_linear(use)]
+    return np.asarray(_LAW**2 * sum((np.maximum(of.left(one) - left, 0.0) for one in bent), np.zeros(3)))
+
+
+def _is_linear(use: EffectUse) -> bool:
+    law = EFFECTS[use.id].law
+    return (law.chain is not None or law.reads is not None) and law.tyre_rate is None
 
 
 def _is_line(done: Candidates, at: Linearised, index: int) -> bool:
@@ -128,17 +149,15 @@ def _swapped(done: Candidates, best: Candidate) -> None:
     """Far from noise, fit the best hypothesis with each name in turn replaced by others.
 
     A forward search finds a name beside those before it; names that could stand in its place must be given
-    the chance, or the data would seem to tell them apart. Near noise those go on that were left behind while
-    their numbers promised as much as the best one has.
+    the chance, or the data would seem to tell them apart. Near noise the likeliest of those that were left
+    behind are fitted to their end.
     """
+    pool = sorted(done.found.values(), key=done.score, reverse=True)
     if done.problem.is_noise(best.point.errors):
-        least = done.score(best) - ALIKE
-        for one in list(done.found.values()):
-            behind = len(one.names) == len(best.names) and done.score(one) < least
-            if behind and least < done.score(one) + done.promised(one):
+        for one in [one for one in pool if len(one.names) == len(best.names)][: _RIVALS + 1]:
+            if one.names != best.names:
                 done.fitted(one.point.hypothesis, one)
         return
-    pool = sorted(done.found.values(), key=done.score, reverse=True)
     uses = {label: one for one in pool for label in one.names}
     for index in range(len(best.names)):
         rivals = [label for label in uses if label not in best.names][:_RIVALS]
@@ -177,16 +196,19 @@ def _named(
     return Named(use, held * share, errors, alike, test if alike else "")
 
 
-def _remains(of: Judged, before: Candidate, after: Candidate) -> float:
+def _remains(of: Judged, before: Candidate, after: Candidate, wrong: Array | float = 0.0) -> float:
     """Share of the variance beyond noise that stays; none where numbers of the base had explained it.
 
     Nor where all that stays may be slow noise, if of one channel half as much as that was taken off, and by
     more than fits to noise so slow bring.
+
+    Args:
+        wrong: variance that stays by what laws get wrong, (3,), whatever takes it off.
     """
     problem, done = of.done.problem, of.done
     if after.prior - before.prior > done.cost_of_a_number(after) and done.score(after) > done.score(before):
         return 0.0
-    had, has = of.left(before), of.left(after)
+    had, has = of.left(before), of.left(after) + wrong
     there, noise = np.isfinite(has), problem.noise**2
     if np.all(has[there] <= problem.slow_noise * noise[there]):
         grew = after.log_likelihood - before.log_likelihood
@@ -227,8 +249,7 @@ def _alike(done: Candidates, best: Candidate, candidates: Sequence[Candidate]) -
         late = _late_outputs(done, best.point.hypothesis.without(index), use)
         if late is None:
             continue
-        laws = [EFFECTS[other.id].law for other in best.point.hypothesis.without(index).terms]
-        linear = all(law.chain is not None or law.reads is not None for law in laws)
+        linear = all(_is_linear(other) for other in best.point.hypothesis.without(index).terms)
         other = best.point if linear else fit(problem, point_at(problem, late, best.point.starts))
         if _apart(problem, best.point, other) < ALIKE:
             label = best.names[index]
