@@ -19,6 +19,7 @@ import numpy.typing as npt
 from hil.analysis.missing_effects._hypothesis import Coordinate, Hypothesis
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._spectrum import Powers
+from hil.core.effects import EFFECTS
 from hil.core.model import Model
 
 Array = npt.NDArray[np.float64]
@@ -27,6 +28,8 @@ _START_ROUNDS = 3
 _DAMPING = 1e-3  # of the normal equations' diagonal, at first
 _SETTLED = 1e-5  # of the cost: a step that brings less is the last one
 _SMALLEST = 1e-6  # step of a coordinate
+_FAILED = 3  # steps in a row, after which slopes are taken anew
+_ABRUPT = (30.0, 1.0)  # differences where contact comes and goes: over small ones the misfit jumps
 ROUNDS = 6
 """Of a fit at most, each with the weights that the one before left."""
 EVALUATIONS = 12  # of a round: the next one has better starts and weights
@@ -39,8 +42,8 @@ class Descent(Protocol):
         """Numbers whose squares are to be least."""
         ...
 
-    def jacobian(self, u: Array) -> Array:
-        """Their derivatives, numbers x coordinates."""
+    def jacobian(self, u: Array, wider: float = 1.0) -> Array:
+        """Their derivatives, numbers x coordinates, over so many times the usual differences."""
         ...
 
 
@@ -124,25 +127,33 @@ def fit(
     hypothesis = point.hypothesis
     coordinates = [one for one in problem.coordinates(hypothesis) if one.term >= 0 or one.name not in held]
     round_ = _Round(problem, hypothesis, point.starts, coordinates)
-    found = least_squares(round_, *bounds_of(coordinates, 1.0), evaluations)
+    abrupt = any(EFFECTS[use.id].abrupt for use in hypothesis.terms)
+    differences = _ABRUPT if abrupt else (1.0,)
+    found = least_squares(round_, *bounds_of(coordinates, 1.0), evaluations, differences)
     hypothesis = hypothesis.moved(coordinates, found)
     return point_at(problem, hypothesis, _better_starts(problem, hypothesis, point.starts, round_.directions))
 
 
-def least_squares(round_: Descent, lower: Array, upper: Array, evaluations: int) -> Array:
+def least_squares(
+    round_: Descent, lower: Array, upper: Array, evaluations: int, differences: Sequence[float] = (1.0,)
+) -> Array:
     """Coordinates that leave least of a round's residual within bounds, from zero.
 
     Levenberg and Marquardt's steps (D. Marquardt, J. SIAM 11 (1963) 431); a coordinate at a bound that the
     slope pushes outwards stays there. Normal equations take a tenth of the time of a decomposition of the
     tall Jacobian, and what they lose in digits the next step has again.
+
+    Args:
+        differences: by which slopes are taken, times the usual ones; the next where steps fail.
     """
     u = np.zeros(len(lower))
     left = round_.residual(u)
     cost, damping = float(left @ left), _DAMPING
-    here = False
+    wider, *narrower = differences
+    here, failed = False, 0
     for _ in range(evaluations - 1):
         if not here:
-            slopes = round_.jacobian(u)
+            slopes = round_.jacobian(u, wider)
             gradient, normal = slopes.T @ left, slopes.T @ slopes
         free = ~(((u <= lower) & (gradient > 0.0)) | ((u >= upper) & (gradient < 0.0)))
         if not free.any():
@@ -155,14 +166,16 @@ def least_squares(round_: Descent, lower: Array, upper: Array, evaluations: int)
         moved = round_.residual(trial)
         had, cost_there = cost, float(moved @ moved)
         here = not cost_there < cost
+        ends = np.max(np.abs(trial - u)) < _SMALLEST
         if not here:
-            u, left, cost, damping = trial, moved, cost_there, 0.1 * damping
-            if had - cost < _SETTLED * had:
-                break
+            u, left, cost, damping, failed = trial, moved, cost_there, 0.1 * damping, 0
+            ends = had - cost < _SETTLED * had
         else:
-            damping *= 10.0
-            if np.max(np.abs(trial - u)) < _SMALLEST:
-                break
+            damping, failed = 10.0 * damping, failed + 1
+        if narrower and (ends or failed == _FAILED):
+            wider, damping, here, failed = narrower.pop(0), _DAMPING, False, 0
+        elif ends:
+            break
     return u
 
 
@@ -222,8 +235,8 @@ class _Round:
 
         return np.concatenate([*self.problem.each(left), self.problem.prior(self.coordinates, u)])
 
-    def jacobian(self, u: Array) -> Array:
-        slopes = self.problem.derivatives(self.hypothesis, self.states, self.coordinates, u)
+    def jacobian(self, u: Array, wider: float = 1.0) -> Array:
+        slopes = self.problem.derivatives(self.hypothesis, self.states, self.coordinates, u, wider)
         parts = self.problem.each(lambda index: without(self.bases[index], slopes[index]))
         prior = self.problem.prior_slopes(self.coordinates, u)
         return np.concatenate([*parts, prior.reshape(len(self.coordinates), len(self.coordinates))])

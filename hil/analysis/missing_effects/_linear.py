@@ -120,11 +120,11 @@ class _Descent:
         error = self.weight * np.nan_to_num(self.responses.response(hypothesis) - self.responses.found)
         return np.concatenate([error.ravel().view(float), self.responses.problem.prior(self.coordinates, u)])
 
-    def jacobian(self, u: Array) -> Array:
+    def jacobian(self, u: Array, wider: float = 1.0) -> Array:
         """Of the residual, by finite differences."""
-        at = self.residual(u)
+        at, step = self.residual(u), wider * _STEP
         steps = [
-            _STEP if one.at(v + _STEP) <= one.upper else -_STEP
+            step if one.at(v + step) <= one.upper else -step
             for one, v in zip(self.coordinates, u, strict=True)
         ]
         return np.column_stack(

@@ -161,10 +161,19 @@ class Problem:
         return whole
 
     def derivatives(
-        self, hypothesis: Hypothesis, starts: Sequence[Array], coordinates: Sequence[Coordinate], u: Array
+        self,
+        hypothesis: Hypothesis,
+        starts: Sequence[Array],
+        coordinates: Sequence[Coordinate],
+        u: Array,
+        wider: float = 1.0,
     ) -> list[Array]:
-        """Derivatives of each recording's weighed errors by the coordinates (numbers x coordinates)."""
-        steps = np.array([_step(one, at) for one, at in zip(coordinates, u.tolist(), strict=True)])
+        """Derivatives of each recording's weighed errors by the coordinates (numbers x coordinates).
+
+        Args:
+            wider: times the usual finite differences.
+        """
+        steps = np.array([_step(one, at, wider) for one, at in zip(coordinates, u.tolist(), strict=True)])
         points = [u, *(u + np.diag(steps))]
         packed = [hypothesis.moved(coordinates, point).packed() for point in points]
 
@@ -210,9 +219,10 @@ def _bounded(values: Array) -> Array:
     return np.asarray(np.clip(np.nan_to_num(values, nan=_FAR), -_FAR, _FAR))
 
 
-def _step(one: Coordinate, at: float) -> float:
+def _step(one: Coordinate, at: float, wider: float) -> float:
     """A finite difference that stays inside the bounds."""
-    return one.step if one.at(at + one.step) <= one.upper else -one.step
+    step = wider * one.step
+    return step if one.at(at + step) <= one.upper else -step
 
 
 def problem_of(model: Model, series: Sequence[Series], noise: Array, spectrum: Spectrum) -> Problem:
