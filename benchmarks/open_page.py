@@ -2,7 +2,8 @@
 
 `python -m benchmarks.open_page [RUNS]` (300): two tabs of a headless Chromium, the bench and the list of
 runs, stay open while runs of 60 s on the simulated bench follow each other, as fast as it computes them:
-300 of them are what a bench does in a day. Each look is taken after a garbage collection. Asked: memory is flat.
+300 of them are what a bench does in a day. Each look is taken after a garbage collection. Asked: memory is
+flat.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ import { session } from "./session.ts";
 import { Menu } from "./shell/menu.tsx";
 import { Palette, paletteOpen } from "./shell/palette.tsx";
 import { SignIn, signOut } from "./shell/sign-in.tsx";
-import { benchInSight, StopButton } from "./shell/stop.tsx";
+import { benchInSight, StopButton, UntakenStop } from "./shell/stop.tsx";
 import { useStore } from "./store.ts";
 import { kindInWords } from "./ui/kinds.ts";
 import { LostNotice } from "./views/bench-banner.tsx";
@@ -48,6 +48,7 @@ export function App(): JSX.Element {
         {who.state === "in" ? <Menu place={place} /> : null}
       </header>
       <main id="main" tabIndex={-1}>
+        <UntakenStop />
         <LostNotice />
         <Refusal />
         {who.state === "in" ? <View place={place} /> : who.state === "out" ? <SignIn /> : <p class="quiet">{t("Asking the service …")}</p>}

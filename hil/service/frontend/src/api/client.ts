@@ -71,7 +71,21 @@ export async function ask<T>(method: string, path: string, body?: Body, signal?:
 }
 
 export const get = <T>(path: string, signal?: AbortSignal): Promise<T> => ask<T>("GET", path, undefined, signal);
-export const post = <T>(path: string, body?: object): Promise<T> => ask<T>("POST", path, body);
+
+const TWICE_MS = 1000;
+let last: { what: string; answer: Promise<unknown>; untilMs: number } | null = null;
+
+// What was asked last and is asked again at once is the same: a double click queues one run and leaves one note.
+export function post<T>(path: string, body?: object): Promise<T> {
+  const what = path + JSON.stringify(body ?? null, (name, value: unknown) => (name === "key" ? undefined : value));
+  if (last?.what === what && Date.now() < last.untilMs) return last.answer as Promise<T>;
+  const answer = ask<T>("POST", path, body);
+  const mine = { what, answer, untilMs: Infinity };
+  last = mine;
+  answer.then(() => { mine.untilMs = Date.now() + TWICE_MS; }, () => { if (last === mine) last = null; });
+  return answer;
+}
+
 export const getText = async (path: string, signal?: AbortSignal): Promise<string> => (await fetched("GET", path, undefined, signal)).text;
 // With what a newer text names it by that replaces it.
 export const getTagged = (path: string, signal?: AbortSignal): Promise<Answered> => fetched("GET", path, undefined, signal);
@@ -90,7 +104,7 @@ export async function findStopPost(): Promise<void> {
 // on which no one answers is tried again.
 export async function stopNow(bench: string): Promise<void> {
   const path = bench ? `/benches/${encodeURIComponent(bench)}/emergency-stop` : "/emergency-stop";
-  const ways = [insist(() => post(path))];
+  const ways = [insist(() => ask("POST", path))];
   if (stopUrl) ways.push(insist(() => byStopPost(path)));
   try {
     await Promise.any(ways);

@@ -5,9 +5,7 @@ import { chooseLanguage, LANGUAGES, type Language } from "../i18n/language.ts";
 import { t } from "../i18n/text.ts";
 import { chooseTheme, THEME_NAMES, THEMES } from "../theme.ts";
 import type { Entry } from "./matching.ts";
-import { stopScope } from "./stop.tsx";
-import { attempt } from "../data.ts";
-import { stopNow } from "../api/client.ts";
+import { pressStop, stopScope } from "./stop.tsx";
 import { signOut } from "./sign-in.tsx";
 
 export const MENU = [
@@ -23,6 +21,6 @@ export const commands = (bench: string): Entry[] => [
   { kind: t("page"), name: t("For the wall of a control room"), about: "", path: to.wall(), also: "page wall" },
   ...THEMES.map((theme) => ({ kind: t("command"), name: t("Colours: {theme}", { theme: THEME_NAMES[theme] }), about: t("light or dark"), act: () => chooseTheme(theme), also: `command Colours: ${theme}` })),
   ...Object.entries(LANGUAGES).map(([tag, name]) => ({ kind: t("command"), name: t("Language: {language}", { language: name }), about: "", act: () => chooseLanguage(tag as Language), also: `command Language: ${tag}` })),
-  { kind: t("command"), name: t("Emergency stop"), about: stopScope(bench), act: () => void attempt(() => stopNow(bench)), also: "command Emergency stop", byName: `${t("Emergency stop")} Emergency stop` },
+  { kind: t("command"), name: t("Emergency stop"), about: stopScope(bench), act: () => void pressStop(bench), also: "command Emergency stop", byName: `${t("Emergency stop")} Emergency stop` },
   { kind: t("command"), name: t("Sign out"), about: "", act: () => void signOut(), also: "command Sign out" },
 ];

@@ -20,17 +20,35 @@ export function useStopOf(bench: string, known: boolean | null): void {
 
 export const stopScope = (bench: string): string => (bench ? t("{bench} only", { bench }) : t("all benches"));
 
+// Whether a stop that was asked for has been taken by nobody for so long that a person must know.
+const LATE_MS = 1000;
+export const stopUntaken = new Store(false);
+
+export async function pressStop(bench: string): Promise<boolean> {
+  const late = setTimeout(() => { stopUntaken.value = true; }, LATE_MS);
+  const taken = await attempt(() => stopNow(bench).then(() => true));
+  clearTimeout(late);
+  stopUntaken.value = !taken;
+  return taken === true;
+}
+
 export function StopButton(): JSX.Element {
-  const bench = useStore(benchInSight);
-  const [sent, setSent] = useState(false);
+  const bench = useStore(benchInSight), untaken = useStore(stopUntaken);
+  const [state, setState] = useState<"" | "sending" | "taken">("");
   const stop = async () => {
-    setSent(true);
-    await attempt(() => stopNow(bench));
-    setTimeout(() => setSent(false), 1500);
+    setState("sending");
+    setState(await pressStop(bench) ? "taken" : "");
+    setTimeout(() => setState((one) => (one === "taken" ? "" : one)), 1500);
   };
+  const words = untaken ? t("NOT delivered") : state === "sending" ? t("sending") : state === "taken" ? t("sent") : stopScope(bench);
   return (
     <button type="button" class="stop" onClick={() => void stop()}>
-      {t("Emergency stop")} <small>{sent ? t("sent") : stopScope(bench)}</small>
+      {t("Emergency stop")} <small>{words}</small>
     </button>
   );
+}
+
+export function UntakenStop(): JSX.Element | null {
+  const untaken = useStore(stopUntaken);
+  return untaken ? <p class="alarm" role="alert">{t("The emergency stop is NOT delivered: the service does not answer. It is tried again for half a minute. Use the stop at the bench.")}</p> : null;
 }
