@@ -82,7 +82,7 @@ async def reset_bench(bench: BenchName, service: TheService, me: Engineer) -> Be
         raise RefusedError(
             409, "its agent does not answer", where=bench, fix="check that the agent is running"
         )
-    service.log.add(me.name, me.role, "reset", bench, f"{count} stops")
+    service.log.add(me.name, me.role, "reset", bench, f"{count} {'stop' if count == 1 else 'stops'}")
     service.wake(bench)
     service.changed(bench)
     return service.bench_data(bench)

@@ -28,7 +28,7 @@ export function Settings(): JSX.Element {
       <Section title={t("Agents")} label="agents"><Agents /></Section>
       {may("admin") ? <People /> : null}
       {may("admin") && me.tokens ? <Section title={t("Tokens")} label="tokens"><Tokens /></Section> : null}
-      {may("admin") && !me.tokens ? <p class="quiet">{tx("This service asks for no tokens. The first one is made on its machine: {command}", { command: <code>hil serve --add-token NAME=admin</code> })}</p> : null}
+      {may("admin") && !me.tokens ? <p class="quiet">{tx("This service asks for no tokens. The first one is made on its machine: {command}", { command: <code>hil serve --data DIR --add-token NAME=admin</code> })}</p> : null}
     </>
   );
 }
