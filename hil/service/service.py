@@ -290,6 +290,7 @@ class Service:
             machine=agent.machine if agent else "",
             stop_confirmed=not (isinstance(bench, RemoteBench) and bench.stop_by),
             away_since=agent.heard_at if agent and agent.away else None,
+            last_speed=self.live_hub.last_speed(name) if state == "emergency_stop" else None,
         )
 
     def waiting(self, bench: str) -> Waiting:

@@ -13,7 +13,8 @@ import { useMay, useMe } from "../session.ts";
 import { linkTo } from "../ui/parts.tsx";
 import { LimitedField } from "../ui/too-long.tsx";
 import { LONGEST_ANSWER, PromptCard } from "./panel-prompt.tsx";
-import { aboutBench, headlineOf, isHeld, isReserved, nextIn, resetText, titleOf } from "./bench-words.ts";
+import { aboutBench, headlineOf, isHeld, isReserved, nextIn, titleOf } from "./bench-words.ts";
+import { Reset } from "./reset.tsx";
 
 export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 }): JSX.Element {
   const { bench, running, message } = state;
@@ -50,17 +51,13 @@ export function Actions({ state, answers = true }: { state: BenchState; answers?
         {running && may("operator") && reached && !held && !stopped ? <button type="button" onClick={order("pause")}>{t("Pause")}</button> : null}
         {running && may("operator") && reached && held && !stopped ? <button type="button" class="main" onClick={order("resume")}>{t("Resume")}</button> : null}
         {running && may("operator") && !stopped ? <button type="button" onClick={order("abort")}>{t("End the run")}</button> : null}
-        {mayReset ? <ResetButton bench={bench} queue={queue} /> : null}
+        {mayReset ? <Reset bench={bench} next={nextIn(queue)} /> : null}
         {bench.away_since && may("engineer") ? <button type="button" onClick={release}>{t("Release from its agent")}</button> : null}
         {!bench.lease && may("operator") && (!bench.reserved_by || bench.reserved_by === me.name) ? <button type="button" onClick={() => void attempt(() => ask("PUT", `/benches/${name}/lease`, { for_s: 3600 }))}>{t("Reserve for an hour")}</button> : null}
         {bench.lease && may("operator") && mayRelease ? <button type="button" onClick={() => void attempt(() => ask("DELETE", `/benches/${name}/lease`))}>{t("End the reservation")}</button> : null}
       </div>
     </>
   );
-}
-
-function ResetButton({ bench, queue }: { bench: Bench; queue: Run[] }): JSX.Element {
-  return <button type="button" class="main" onClick={() => void attempt(() => post(`/benches/${encodeURIComponent(bench.name)}/reset`))}>{resetText(nextIn(queue))}</button>;
 }
 
 // Where a run is shown that was stopped, and its bench still is.
@@ -71,7 +68,7 @@ export function ResetOf({ bench }: { bench: Bench }): JSX.Element | null {
   return (
     <section class="banner emergency_stop" aria-label={t("State of {bench}", { bench: bench.name })}>
       <p>{bench.why ? <English>{bench.why}</English> : t("Emergency stop")}</p>
-      {bench.running ? <p>{t("The run is being ended.")}</p> : may("engineer") ? <div class="row"><ResetButton bench={bench} queue={queue} /></div> : <p>{t("When it is safe, an engineer resets the emergency stop.")}</p>}
+      {bench.running ? <p>{t("The run is being ended.")}</p> : may("engineer") ? <div class="row"><Reset bench={bench} next={nextIn(queue)} /></div> : <p>{t("When it is safe, an engineer resets the emergency stop.")}</p>}
     </section>
   );
 }

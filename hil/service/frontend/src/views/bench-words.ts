@@ -1,7 +1,7 @@
 // States of a bench in words: what it does, who has it, what comes next.
 
 import type { Bench, Run } from "../api/types.ts";
-import { nearMoment } from "../format.ts";
+import { figure, nearMoment, roughly } from "../format.ts";
 import { t } from "../i18n/text.ts";
 import type { BenchState } from "../live.ts";
 
@@ -81,4 +81,12 @@ export function leftOf(bench: Bench, run: Run | null, nowMs: number): number | n
 // What the button does that resets a stop: the queue goes on.
 export function resetText(next: Run | null | undefined): string {
   return next ? t("It is safe: reset the emergency stop. Run {run} starts then.", { run: next.id }) : t("It is safe: reset the emergency stop");
+}
+
+// The speed that was measured last before or after a stop, beside what resets it.
+export function lastSpeedText(bench: Bench, nowMs: number): string {
+  const last = bench.last_speed;
+  if (!last) return t("The last speed of the motor is not known here. Look whether the axle stands.");
+  const values = { time: roughly(Math.max(0, (nowMs - Date.parse(last.at)) / 1000)), speed: figure(Math.abs(last.speed_rad_s), "rad/s") };
+  return last.turns ? t("At the last look, {time} ago, the motor turned at {speed}.", values) : t("At the last look, {time} ago, the motor stood.", values);
 }
