@@ -46,7 +46,10 @@ class Steered(Protocol):
 
 @dataclass
 class RunningRun:
-    """A run under way. `message`: the last text for its operator; `prompt`: a question that is open."""
+    """A run under way. `message`: the last text for its operator; `prompt`: a question that is open.
+
+    `ending`: somebody has asked for its end, which its end steps may delay.
+    """
 
     data: RunData
     folder: Path
@@ -55,6 +58,12 @@ class RunningRun:
     doing: str = "beginning"
     message: str = ""
     prompt: PromptData | None = None
+    ending: bool = False
+
+    @property
+    def shown(self) -> str:
+        """What it does, for people."""
+        return f"being ended: {self.doing}" if self.ending else self.doing
 
 
 @dataclass(frozen=True)

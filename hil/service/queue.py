@@ -133,7 +133,7 @@ class Queue:
         if stopped:
             return "emergency_stop", stopped
         if place.running is not None:
-            return "running", place.running.doing
+            return "running", place.running.shown
         if place.left:
             return "ending", f"run {place.left[0].id} of an earlier service process is being ended"
         if place.held_by:

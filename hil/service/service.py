@@ -313,7 +313,7 @@ class Service:
         running = self.running_run(run.id)
         if running is not None:
             away = f"; {self.database.away}" if self.database.away else ""
-            doing = {"share": running.share, "doing": running.doing + away, "message": running.message}
+            doing = {"share": running.share, "doing": running.shown + away, "message": running.message}
             return run.model_copy(update={**doing, "prompt": running.prompt})
         return run
 

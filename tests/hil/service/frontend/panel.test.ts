@@ -67,3 +67,11 @@ test("beside a reset stands the speed that was measured last, and how long ago",
   assert.match(lastSpeedText({ ...bench, last_speed: { speed_rad_s: 0.1, at, turns: false } }, now), /stood/);
   assert.match(lastSpeedText(bench, now), /not known/);
 });
+
+test("a run of which somebody has asked for the end is being ended, whatever else it does", () => {
+  const ending = stateOf("running", { ...RUN, doing: "being ended: held: oil", prompt: QUESTION });
+  assert.equal(wordOf(ending.bench, ending.running), "Being ended");
+  assert.equal(headlineOf(ending.bench, "Steps", true), "Being ended: Steps");
+  assert.equal(nextOf(ending), "The run is being ended.");
+  assert.equal(leftOf(ending.bench, ending.running, Date.parse("2026-11-28T10:00:30Z")), null);
+});
