@@ -132,8 +132,7 @@ class RunExecution(RunningRun):
         reason = "" if result is not None else str(refused or f"its process ended with code {code}")
         if result is None and recorded:
             reason += f"\n  hil evidence recover {self.folder} recovers the recording of what was measured"
-        dut = bench.file.dut.get("serial", bench.file.dut.get("name", ""))
-        return RunEnd("interrupted" if closing() else "ended", code, result, reason, dut)
+        return RunEnd("interrupted" if closing() else "ended", code, result, reason, bench.dut)
 
     def _asks_no_more(self) -> None:
         self.message, self.prompt = "", None
@@ -146,13 +145,18 @@ def _asked(question: Question | None) -> PromptData | None:
     return PromptData(text=question.text, answer_by=until, picture=question.picture)
 
 
-def end_of_left(folder: Path, who: str) -> RunEnd:
-    """How a run ended whose service or agent (`who`) was killed; its process has ended."""
+def end_of_left(folder: Path, who: str, bench: Bench | None) -> RunEnd:
+    """How a run ended whose service or agent (`who`) was killed; its process has ended.
+
+    Args:
+        bench: of the run, for the device that it had; None if that is not known here any more.
+    """
     result = result_in(folder)
     reason = (_KEPT if (folder / RECORDING).exists() else _NOTHING).format(who=who)
     if result is not None and result.reason not in ("", GONE_REASON):
         reason += f": {result.reason}"
-    return RunEnd("interrupted", result=result, reason=reason, at=_last_written(folder))
+    dut = bench.dut if bench is not None else ""
+    return RunEnd("interrupted", result=result, reason=reason, dut=dut, at=_last_written(folder))
 
 
 def _last_written(folder: Path) -> datetime.datetime | None:

@@ -272,7 +272,8 @@ class Queue:
 
     def _conclude_left(self, run: RunData) -> None:
         """Mark a run whose service was killed; its process has ended."""
-        end = end_of_left(self.folder_of(run.id), "service")
+        place = self._places.get(run.bench)
+        end = end_of_left(self.folder_of(run.id), "service", place.bench if place is not None else None)
         logger.warning("run %d: %s", run.id, end.reason)
         self._write(run, end)
 
