@@ -11,7 +11,7 @@ from typing import Literal, Protocol
 
 from hil.api_schemas.agent import TakenRun
 from hil.api_schemas.api import PromptData, RunData
-from hil.core.errors import HilError
+from hil.core.errors import EmergencyStopError, HilError
 from hil.core.files import make_directory, write_atomically
 from hil.core.result import RunResult
 from hil.engine import RECORDING
@@ -127,7 +127,7 @@ class RunExecution(RunningRun):
             changed()
         code = await self.process.exit_code()
         result, recorded = result_in(self.folder), (self.folder / RECORDING).exists()
-        if refused is not None and not recorded and not closing() and bench.used_by():
+        if refused is not None and not recorded and not closing() and _keeps_waiting(refused, bench):
             return RunEnd("queued", reason=str(refused))
         reason = "" if result is not None else str(refused or f"its process ended with code {code}")
         if result is None and recorded:
@@ -136,6 +136,14 @@ class RunExecution(RunningRun):
 
     def _asks_no_more(self) -> None:
         self.message, self.prompt = "", None
+
+
+def _keeps_waiting(refused: HilError, bench: Bench) -> bool:
+    """Whether a run that has not begun waits again: its bench is used, or a stop was latched before it.
+
+    A run that was itself stopped is over.
+    """
+    return bool(bench.used_by() or (bench.stopped() and not isinstance(refused, EmergencyStopError)))
 
 
 def _asked(question: Question | None) -> PromptData | None:
