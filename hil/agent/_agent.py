@@ -241,7 +241,7 @@ class _Agent:
             return await bench.running.ended(bench.bench, lambda: None, lambda: self._closing)
         while alive_in(run.folder):
             await asyncio.sleep(_LOOK_S)
-        return end_of_left(run.folder, "agent")
+        return end_of_left(run.folder, "agent", bench.bench if bench is not None else None)
 
 
 _URL_FIX = "check that this is the URL of a bench service of the same version"

@@ -170,6 +170,14 @@ class Answer(_Data):
     text: str = Field("", max_length=500, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")
 
 
+class LastSpeed(_Data):
+    """The motor's speed as it was measured last."""
+
+    speed_rad_s: float
+    at: datetime.datetime
+    turns: bool = Field(description="whether that is more than standstill")
+
+
 class BenchData(_Data):
     """A bench and its state."""
 
@@ -189,6 +197,9 @@ class BenchData(_Data):
     machine: str = Field("", description="machine of its agent; '' for a bench of the service")
     stop_confirmed: bool = Field(True, description="false while an agent has not confirmed an emergency stop")
     away_since: datetime.datetime | None = Field(None, description="time of the last report of its agent")
+    last_speed: LastSpeed | None = Field(
+        None, description="of its newest run, while an emergency stop is latched; null if it is not known"
+    )
 
 
 class VariableData(_Data):

@@ -29,6 +29,11 @@ class Bench:
         return self.file.title
 
     @property
+    def dut(self) -> str:
+        """Serial number or name of the device under test; '' for none."""
+        return self.file.dut.get("serial", self.file.dut.get("name", ""))
+
+    @property
     def simulated(self) -> bool:
         """Whether what moves is computed."""
         return self.file.simulation is not None

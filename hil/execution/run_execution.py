@@ -11,7 +11,7 @@ from typing import Literal, Protocol
 
 from hil.api_schemas.agent import TakenRun
 from hil.api_schemas.api import PromptData, RunData
-from hil.core.errors import HilError
+from hil.core.errors import EmergencyStopError, HilError
 from hil.core.files import make_directory, write_atomically
 from hil.core.result import RunResult
 from hil.engine import RECORDING
@@ -46,7 +46,10 @@ class Steered(Protocol):
 
 @dataclass
 class RunningRun:
-    """A run under way. `message`: the last text for its operator; `prompt`: a question that is open."""
+    """A run under way. `message`: the last text for its operator; `prompt`: a question that is open.
+
+    `ending`: somebody has asked for its end, which its end steps may delay.
+    """
 
     data: RunData
     folder: Path
@@ -55,6 +58,12 @@ class RunningRun:
     doing: str = "beginning"
     message: str = ""
     prompt: PromptData | None = None
+    ending: bool = False
+
+    @property
+    def shown(self) -> str:
+        """What it does, for people."""
+        return f"being ended: {self.doing}" if self.ending else self.doing
 
 
 @dataclass(frozen=True)
@@ -118,16 +127,23 @@ class RunExecution(RunningRun):
             changed()
         code = await self.process.exit_code()
         result, recorded = result_in(self.folder), (self.folder / RECORDING).exists()
-        if refused is not None and not recorded and not closing() and bench.used_by():
+        if refused is not None and not recorded and not closing() and _keeps_waiting(refused, bench):
             return RunEnd("queued", reason=str(refused))
         reason = "" if result is not None else str(refused or f"its process ended with code {code}")
         if result is None and recorded:
             reason += f"\n  hil evidence recover {self.folder} recovers the recording of what was measured"
-        dut = bench.file.dut.get("serial", bench.file.dut.get("name", ""))
-        return RunEnd("interrupted" if closing() else "ended", code, result, reason, dut)
+        return RunEnd("interrupted" if closing() else "ended", code, result, reason, bench.dut)
 
     def _asks_no_more(self) -> None:
         self.message, self.prompt = "", None
+
+
+def _keeps_waiting(refused: HilError, bench: Bench) -> bool:
+    """Whether a run that has not begun waits again: its bench is used, or a stop was latched before it.
+
+    A run that was itself stopped is over.
+    """
+    return bool(bench.used_by() or (bench.stopped() and not isinstance(refused, EmergencyStopError)))
 
 
 def _asked(question: Question | None) -> PromptData | None:
@@ -137,13 +153,18 @@ def _asked(question: Question | None) -> PromptData | None:
     return PromptData(text=question.text, answer_by=until, picture=question.picture)
 
 
-def end_of_left(folder: Path, who: str) -> RunEnd:
-    """How a run ended whose service or agent (`who`) was killed; its process has ended."""
+def end_of_left(folder: Path, who: str, bench: Bench | None) -> RunEnd:
+    """How a run ended whose service or agent (`who`) was killed; its process has ended.
+
+    Args:
+        bench: of the run, for the device that it had; None if that is not known here any more.
+    """
     result = result_in(folder)
     reason = (_KEPT if (folder / RECORDING).exists() else _NOTHING).format(who=who)
     if result is not None and result.reason not in ("", GONE_REASON):
         reason += f": {result.reason}"
-    return RunEnd("interrupted", result=result, reason=reason, at=_last_written(folder))
+    dut = bench.dut if bench is not None else ""
+    return RunEnd("interrupted", result=result, reason=reason, dut=dut, at=_last_written(folder))
 
 
 def _last_written(folder: Path) -> datetime.datetime | None:

@@ -133,7 +133,7 @@ class Queue:
         if stopped:
             return "emergency_stop", stopped
         if place.running is not None:
-            return "running", place.running.doing
+            return "running", place.running.shown
         if place.left:
             return "ending", f"run {place.left[0].id} of an earlier service process is being ended"
         if place.held_by:
@@ -272,7 +272,8 @@ class Queue:
 
     def _conclude_left(self, run: RunData) -> None:
         """Mark a run whose service was killed; its process has ended."""
-        end = end_of_left(self.folder_of(run.id), "service")
+        place = self._places.get(run.bench)
+        end = end_of_left(self.folder_of(run.id), "service", place.bench if place is not None else None)
         logger.warning("run %d: %s", run.id, end.reason)
         self._write(run, end)
 

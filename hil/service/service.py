@@ -290,6 +290,7 @@ class Service:
             machine=agent.machine if agent else "",
             stop_confirmed=not (isinstance(bench, RemoteBench) and bench.stop_by),
             away_since=agent.heard_at if agent and agent.away else None,
+            last_speed=self.live_hub.last_speed(name) if state == "emergency_stop" else None,
         )
 
     def waiting(self, bench: str) -> Waiting:
@@ -312,7 +313,7 @@ class Service:
         running = self.running_run(run.id)
         if running is not None:
             away = f"; {self.database.away}" if self.database.away else ""
-            doing = {"share": running.share, "doing": running.doing + away, "message": running.message}
+            doing = {"share": running.share, "doing": running.shown + away, "message": running.message}
             return run.model_copy(update={**doing, "prompt": running.prompt})
         return run
 

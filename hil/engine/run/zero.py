@@ -17,9 +17,8 @@ REST_S = 0.2  # over so long a mean is taken
 SETTLE_S = 0.3  # what swings when the drives are switched off has died away
 STANDSTILL_WITHIN_S = 1.0
 _SILENT = "nothing came"
-_STANDSTILL_RAD_S = (
-    0.5  # slower than this is rest: an offset of a speed sensor is less, a wheel that turns more
-)
+#: Slower than this is rest: an offset of a speed sensor is less, a wheel that turns more.
+STANDSTILL_RAD_S = 0.5
 #: Sensors of the axle; others are looked at if the bench file limits them.
 SENSORS = (
     "motor_speed_rad_s",
@@ -130,7 +129,7 @@ def zero_of(
 def turning(readings: Mapping[str, float]) -> str:
     """Which speed says that the axle turns; '' if it stands still."""
     for name, value in readings.items():
-        if name in SENSORS and name.endswith("rad_s") and abs(value) > _STANDSTILL_RAD_S:
+        if name in SENSORS and name.endswith("rad_s") and abs(value) > STANDSTILL_RAD_S:
             return f"the axle turns: {name} reads {value:.3g} rad/s"
     return ""
 

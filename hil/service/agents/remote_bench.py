@@ -130,7 +130,7 @@ class RemoteBench:
                 away += f"; run {self.running.data.id} ends there by itself; its agent uploads it later"
             return "away", away
         if self.report.state == "free" and self.running is not None:
-            return "running", self.running.doing
+            return "running", self.running.shown
         return self.report.state, self.report.why
 
 

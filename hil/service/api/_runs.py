@@ -141,6 +141,7 @@ async def abort_run(run: RunId, service: TheService, me: Operator) -> RunData:
     running = service.running_run(run)
     if running is not None:
         running.process.end()
+        running.ending = True
     elif not service.runs.cancel(run, f"cancelled by {me.name}"):
         raise RefusedError(409, f"run {run} is finished")
     return _done(service, me, found, "abort")

@@ -7,6 +7,7 @@ share what is read here; one that is slow gets wider buckets, which still have e
 from __future__ import annotations
 
 import contextlib
+import datetime
 import itertools
 from collections import deque
 from dataclasses import dataclass
@@ -154,6 +155,7 @@ class LiveRun:
         self._envelope: EnvelopeBuilder | None = None
         self.buckets = Buckets()
         self.time_s = 0.0
+        self.last_speed: tuple[float, datetime.datetime] | None = None  # of the motor, rad/s; when it came
 
     def look(self, passed_s: float) -> bool:
         """Read what has come, `passed_s` after the last look; whether there is more to show."""
@@ -254,3 +256,6 @@ class LiveRun:
         new = rows[:, [self._file.names.index(TIME), column]].T
         both = np.concatenate([self._recent, new], axis=1)
         self._recent = both[:, both[0] > both[0, -1] - _SPECTRUM_S]
+        known = new[1, np.isfinite(new[1])]
+        if len(known):
+            self.last_speed = float(known[-1]), datetime.datetime.now(datetime.UTC)

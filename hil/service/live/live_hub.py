@@ -13,10 +13,12 @@ from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from hil.api_schemas.api import LastSpeed
 from hil.core.errors import HilError
 from hil.core.recording import write_overview
 from hil.core.result import CriterionResult
 from hil.engine import RECORDING
+from hil.engine.run.zero import STANDSTILL_RAD_S
 from hil.execution.data_folder import folder_of
 from hil.execution.run_execution import PLAN, RunningRun
 from hil.service.live.bucket_texts import BucketTexts
@@ -84,6 +86,14 @@ class LiveHub:
     def run_of(self, bench: str) -> LiveView | None:
         """The run that is shown of a bench."""
         return self._runs.get(bench)
+
+    def last_speed(self, bench: str) -> LastSpeed | None:
+        """The motor's speed in the last sample of the newest run, its run-down included; None if unknown."""
+        shown = self._runs.get(bench)
+        if shown is None or shown.live.last_speed is None:
+            return None
+        speed_rad_s, at = shown.live.last_speed
+        return LastSpeed(speed_rad_s=speed_rad_s, at=at, turns=abs(speed_rad_s) > STANDSTILL_RAD_S)
 
     def runs(self) -> set[int]:
         """Numbers of all runs that are shown."""
@@ -153,6 +163,7 @@ class LiveHub:
         if shown is None or shown.kept or not shown.live.over:
             return
         shown.kept, overview = True, shown.live.overview()
+        self.changed(bench)  # its last speed is known now
         if overview is not None:
             with contextlib.suppress(OSError, HilError):
                 await asyncio.to_thread(write_overview, overview, self.overview_folder(shown.run))

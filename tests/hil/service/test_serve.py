@@ -49,7 +49,7 @@ def test_a_run_that_waits_is_cancelled_and_one_under_way_ends_safely(service: Se
     service.until(first, lambda run: run["state"] == "running" and run["share"] is not None)
     second = service.queue()
     assert service.post(f"/runs/{second}/abort")["state"] == "cancelled"
-    service.post(f"/runs/{first}/abort")
+    assert service.post(f"/runs/{first}/abort")["doing"].startswith("being ended")
     over = service.over(first)
     assert (over["exit_code"], over["safe_state"]) == (130, "confirmed")
     assert "recording.mcap" in over["files"]

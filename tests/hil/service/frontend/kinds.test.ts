@@ -3,6 +3,8 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
+import type { Run } from "../../../../hil/service/frontend/src/api/types.ts";
+import { runInWords } from "../../../../hil/service/frontend/src/ui/run-kind.ts";
 import { fileURLToPath } from "node:url";
 import { isKind, kindInWords } from "../../../../hil/service/frontend/src/ui/kinds.ts";
 
@@ -20,3 +22,8 @@ test("each of the API's states, verdicts, roles and kinds has words", () => {
 });
 
 test("a name that is not known is shown as it is, in words", () => assert.equal(kindInWords("some_thing"), "some thing"));
+
+test("a run has one word, of its state and its verdict", () => {
+  const runs = [["ended", "pass"], ["ended", null], ["interrupted", "error"], ["interrupted", null], ["cancelled", null], ["queued", null]] as [Run["state"], NonNullable<Run["verdict"]> | null][];
+  assert.deepEqual(runs.map(([state, verdict]) => runInWords({ state, verdict })), ["pass", "error", "interrupted", "interrupted", "cancelled", "queued"]);
+});

@@ -5,7 +5,7 @@ import test from "node:test";
 import type { Bench, Run } from "../../../../hil/service/frontend/src/api/types.ts";
 import type { BenchState } from "../../../../hil/service/frontend/src/live.ts";
 import { soundOf } from "../../../../hil/service/frontend/src/ui/sound.ts";
-import { aboutBench, headlineOf, leftOf, nextOf, wallWordOf, wordOf } from "../../../../hil/service/frontend/src/views/bench-words.ts";
+import { aboutBench, headlineOf, lastSpeedText, leftOf, nextOf, wallWordOf, wordOf } from "../../../../hil/service/frontend/src/views/bench-words.ts";
 
 const RUN = { id: 7, plan: "steps", title: "Steps", requested_by: "anna", doing: "tip_in", share: 0.25, state: "running", started_at: "2026-11-28T10:00:00Z" } as Run;
 const QUESTION = { text: "Is the cage shut?", answer_by: "2026-11-28T10:10:00Z", picture: "" };
@@ -59,4 +59,19 @@ test("a trip, a question and an end sound once, and the first look at a bench do
   assert.equal(soundOf(stopped, stateOf("emergency_stop")), "end");
   assert.equal(soundOf(running, stateOf("running", { ...RUN, doing: "held: oil" })), "trip");
   assert.deepEqual([soundOf(running, asked), soundOf(asked, asked), soundOf(asked, running), soundOf(asked, stateOf("free"))], ["prompt", null, null, "end"]);
+});
+
+test("beside a reset stands the speed that was measured last, and how long ago", () => {
+  const at = "2026-11-28T10:00:00Z", now = Date.parse(at) + 12_000, { bench } = stateOf("emergency_stop");
+  assert.equal(lastSpeedText({ ...bench, last_speed: { speed_rad_s: -137, at, turns: true } }, now), "At the last look, 12\u00a0s ago, the motor turned at 137\u00a0rad/s.");
+  assert.match(lastSpeedText({ ...bench, last_speed: { speed_rad_s: 0.1, at, turns: false } }, now), /stood/);
+  assert.match(lastSpeedText(bench, now), /not known/);
+});
+
+test("a run of which somebody has asked for the end is being ended, whatever else it does", () => {
+  const ending = stateOf("running", { ...RUN, doing: "being ended: held: oil", prompt: QUESTION });
+  assert.equal(wordOf(ending.bench, ending.running), "Being ended");
+  assert.equal(headlineOf(ending.bench, "Steps", true), "Being ended: Steps");
+  assert.equal(nextOf(ending), "The run is being ended.");
+  assert.equal(leftOf(ending.bench, ending.running, Date.parse("2026-11-28T10:00:30Z")), null);
 });

@@ -104,6 +104,21 @@ def test_a_recording_is_read_while_it_grows(tmp_path: Path) -> None:
     assert np.array_equal(together[:, 1], read_as_written(path)[SPECTRUM_CHANNEL])
 
 
+def test_the_last_speed_that_was_measured_stays_known_when_the_run_is_over(tmp_path: Path) -> None:
+    path, rows = tmp_path / "recording.mcap", samples(300)
+    rows[-2, 1], rows[-1, 1] = 137.0, np.nan
+    live = LiveRun(path, plan_from_text(SHORT, "p", tmp_path))
+    assert live.last_speed is None
+    writer = RecordingWriter(path, NAMES, ["rmcu"])
+    writer.add_rows(rows)
+    writer.close()
+    live.look(0.0)
+    assert live.over
+    live.close()
+    assert live.last_speed is not None
+    assert live.last_speed[0] == 137.0
+
+
 @given(st.lists(st.integers(0, 3000), max_size=6).map(sorted))
 def test_half_a_record_is_taken_when_it_is_whole(cuts: list[int]) -> None:
     import tempfile

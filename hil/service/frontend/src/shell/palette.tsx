@@ -9,7 +9,7 @@ import { t } from "../i18n/text.ts";
 import { go } from "../router.ts";
 import { session } from "../session.ts";
 import { Store, useStore } from "../store.ts";
-import { kindInWords } from "../ui/kinds.ts";
+import { runInWords } from "../ui/run-kind.ts";
 import { found, type Entry } from "./matching.ts";
 import { commands } from "./commands.ts";
 import { benchInSight } from "./stop.tsx";
@@ -103,4 +103,4 @@ function useRuns(text: string): Entry[] {
   return runs;
 }
 
-const entryOf = (run: Run): Entry => ({ kind: t("run"), name: t("Run {run}", { run: run.id }), about: `${run.title || run.plan}, ${run.bench}, ${kindInWords(run.verdict ?? run.state)}`, path: to.run(run.id), also: `Run ${run.id}` });
+const entryOf = (run: Run): Entry => ({ kind: t("run"), name: t("Run {run}", { run: run.id }), about: `${run.title || run.plan}, ${run.bench}, ${runInWords(run)}`, path: to.run(run.id), also: `Run ${run.id}` });

@@ -6,18 +6,15 @@ import { moment } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { placeOf, titleOf } from "../addresses.ts";
 import type { Asked } from "../data.ts";
-import type { Run } from "../api/types.ts";
 import { kindInWords } from "./kinds.ts";
 
 export { inWords } from "./kinds.ts";
+export { verdictOf } from "./run-kind.ts";
 import { t } from "../i18n/text.ts";
 
 export function Badge({ kind }: { kind: string }): JSX.Element {
   return <span class={`verdict ${kind}`}>{kindInWords(kind)}</span>;
 }
-
-export const verdictOf = (run: Run): string =>
-  run.state === "ended" ? (run.verdict ?? "error") : run.state === "interrupted" ? "interrupted" : run.state;
 
 // A moment in the reader's language; as ISO 8601 where the pointer stays on it.
 export function Moment({ at }: { at: string | null | undefined }): JSX.Element {

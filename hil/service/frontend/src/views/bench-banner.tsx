@@ -13,7 +13,8 @@ import { useMay, useMe } from "../session.ts";
 import { linkTo } from "../ui/parts.tsx";
 import { LimitedField } from "../ui/too-long.tsx";
 import { LONGEST_ANSWER, PromptCard } from "./panel-prompt.tsx";
-import { aboutBench, headlineOf, isHeld, isReserved, nextIn, resetText, titleOf } from "./bench-words.ts";
+import { aboutBench, headlineOf, isEnding, isHeld, isReserved, nextIn, titleOf } from "./bench-words.ts";
+import { Reset } from "./reset.tsx";
 
 export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 }): JSX.Element {
   const { bench, running, message } = state;
@@ -21,7 +22,7 @@ export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 
   return (
     <section class={`banner ${isReserved(bench) ? "in_use" : bench.state}`} aria-label={t("State of {bench}", { bench: bench.name })}>
       <p class="kind">{aboutBench(bench, bench.title || bench.name)}</p>
-      <Title class="headline" aria-live="polite">{headlineOf(bench, running ? titleOf(running) : null)}</Title>
+      <Title class="headline" aria-live="polite">{headlineOf(bench, running ? titleOf(running) : null, isEnding(running))}</Title>
       {running ? <p>{tx("<a>Run {run}</a>, by {person}: {doing}", { a: linkTo(to.run(running.id)), run: running.id, person: running.requested_by, doing: <English>{running.doing}</English> })}</p> : null}
       {bench.why && !(running && bench.state === "running") ? <p><English>{bench.why}</English></p> : null}
       {running ? <progress max={1} value={running.share ?? 0} aria-label={t("Progress of the run")} /> : null}
@@ -37,6 +38,12 @@ export function Actions({ state, answers = true }: { state: BenchState; answers?
   const name = encodeURIComponent(bench.name);
   const reached = !bench.away_since;
   const held = isHeld(running), stopped = bench.state === "emergency_stop";
+  const [ended, setEnded] = useState<number | null>(null); // the run whose end was asked for here just now
+  const ending = isEnding(running) || (running !== null && ended === running.id);
+  const end = (run: number) => {
+    setEnded(run);
+    void attempt(() => post(`/runs/${run}/abort`).then(() => true)).then((taken) => { if (!taken) setEnded(null); });
+  };
   const order = (what: string) => () => void attempt(() => post(`/runs/${running?.id}/${what}`));
   const release = () => {
     if (confirm(t("Is {bench} no longer driven by its agent? It can then be driven by another agent. A run of this agent is marked as interrupted.", { bench: bench.name }))) void attempt(() => ask("DELETE", `/benches/${name}/agent`));
@@ -47,20 +54,16 @@ export function Actions({ state, answers = true }: { state: BenchState; answers?
     <>
       {answers && running && message && may("operator") && reached ? <AnswerForm run={running.id} /> : null}
       <div class="row">
-        {running && may("operator") && reached && !held && !stopped ? <button type="button" onClick={order("pause")}>{t("Pause")}</button> : null}
-        {running && may("operator") && reached && held && !stopped ? <button type="button" class="main" onClick={order("resume")}>{t("Resume")}</button> : null}
-        {running && may("operator") && !stopped ? <button type="button" onClick={order("abort")}>{t("End the run")}</button> : null}
-        {mayReset ? <ResetButton bench={bench} queue={queue} /> : null}
+        {running && may("operator") && reached && !held && !stopped ? <button type="button" disabled={ending} onClick={order("pause")}>{t("Pause")}</button> : null}
+        {running && may("operator") && reached && held && !stopped ? <button type="button" class="main" disabled={ending} onClick={order("resume")}>{t("Resume")}</button> : null}
+        {running && may("operator") && !stopped ? <button type="button" disabled={ending} onClick={() => end(running.id)}>{ending ? t("Being ended") : t("End the run")}</button> : null}
+        {mayReset ? <Reset bench={bench} next={nextIn(queue)} /> : null}
         {bench.away_since && may("engineer") ? <button type="button" onClick={release}>{t("Release from its agent")}</button> : null}
         {!bench.lease && may("operator") && (!bench.reserved_by || bench.reserved_by === me.name) ? <button type="button" onClick={() => void attempt(() => ask("PUT", `/benches/${name}/lease`, { for_s: 3600 }))}>{t("Reserve for an hour")}</button> : null}
         {bench.lease && may("operator") && mayRelease ? <button type="button" onClick={() => void attempt(() => ask("DELETE", `/benches/${name}/lease`))}>{t("End the reservation")}</button> : null}
       </div>
     </>
   );
-}
-
-function ResetButton({ bench, queue }: { bench: Bench; queue: Run[] }): JSX.Element {
-  return <button type="button" class="main" onClick={() => void attempt(() => post(`/benches/${encodeURIComponent(bench.name)}/reset`))}>{resetText(nextIn(queue))}</button>;
 }
 
 // Where a run is shown that was stopped, and its bench still is.
@@ -71,7 +74,7 @@ export function ResetOf({ bench }: { bench: Bench }): JSX.Element | null {
   return (
     <section class="banner emergency_stop" aria-label={t("State of {bench}", { bench: bench.name })}>
       <p>{bench.why ? <English>{bench.why}</English> : t("Emergency stop")}</p>
-      {bench.running ? <p>{t("The run is being ended.")}</p> : may("engineer") ? <div class="row"><ResetButton bench={bench} queue={queue} /></div> : <p>{t("When it is safe, an engineer resets the emergency stop.")}</p>}
+      {bench.running ? <p>{t("The run is being ended.")}</p> : may("engineer") ? <div class="row"><Reset bench={bench} next={nextIn(queue)} /></div> : <p>{t("When it is safe, an engineer resets the emergency stop.")}</p>}
     </section>
   );
 }

@@ -1,7 +1,7 @@
 // States of a bench in words: what it does, who has it, what comes next.
 
 import type { Bench, Run } from "../api/types.ts";
-import { nearMoment } from "../format.ts";
+import { figure, nearMoment, roughly } from "../format.ts";
 import { t } from "../i18n/text.ts";
 import type { BenchState } from "../live.ts";
 
@@ -10,6 +10,9 @@ const STATES: Record<Bench["state"], string> = {
 };
 
 export const isHeld = (run: Run | null): boolean => run?.doing.startsWith("held") ?? false;
+
+// Somebody has asked for its end: that cannot be taken back.
+export const isEnding = (run: Run | null): boolean => run?.doing.startsWith("being ended") ?? false;
 
 export const titleOf = (run: Run): string => run.title || run.plan;
 
@@ -27,16 +30,16 @@ export function reservedText(bench: Bench): string {
 // The colours of a bench: its state, or that it waits for a person.
 export const lookOf = (bench: Bench, run: Run | null): string => (run?.prompt || isReserved(bench) ? "in_use" : bench.state);
 
-export function headlineOf(bench: Bench, title: string | null): string {
+export function headlineOf(bench: Bench, title: string | null, ending = false): string {
   if (bench.stop_confirmed === false) return t("Emergency stop asked for, NOT CONFIRMED");
-  if (title !== null && bench.state === "running") return t("Running: {plan}", { plan: title });
+  if (title !== null && bench.state === "running") return ending ? t("Being ended: {plan}", { plan: title }) : t("Running: {plan}", { plan: title });
   return isReserved(bench) ? reservedText(bench) : STATES[bench.state];
 }
 
 // To be read from afar.
 export function wordOf(bench: Bench, run: Run | null): string {
   if (bench.state !== "running" || bench.stop_confirmed === false) return headlineOf(bench, null);
-  return run?.prompt ? t("Question") : isHeld(run) ? t("Held") : STATES.running;
+  return isEnding(run) ? t("Being ended") : run?.prompt ? t("Question") : isHeld(run) ? t("Held") : STATES.running;
 }
 
 // The largest word on the wall of a control room: one, and short.
@@ -45,7 +48,7 @@ const WALL: Record<Bench["state"], string> = { free: t("Free"), running: t("Runn
 export function wallWordOf(bench: Bench, run: Run | null): string {
   if (bench.stop_confirmed === false) return WALL.emergency_stop;
   if (isReserved(bench)) return t("Reserved");
-  return bench.state !== "running" ? WALL[bench.state] : run?.prompt ? t("Question") : isHeld(run) ? t("Held") : WALL.running;
+  return bench.state !== "running" ? WALL[bench.state] : isEnding(run) ? WALL.ending : run?.prompt ? t("Question") : isHeld(run) ? t("Held") : WALL.running;
 }
 
 // The first that may start as it is; one that waits for somebody where none may.
@@ -55,6 +58,7 @@ export const nextIn = (queue: Run[]): Run | undefined => queue.find((run) => run
 export function nextOf({ bench, running, queue }: BenchState): string {
   const first = nextIn(queue), more = queue.length - 1;
   if (bench.state === "emergency_stop") return running ? t("The run is being ended.") : t("When it is safe, an engineer resets the emergency stop.");
+  if (isEnding(running)) return t("The run is being ended.");
   if (running?.prompt) return t("The run goes on when the question is answered.");
   if (running && isHeld(running)) return t("The run is held and the torque is off. It goes on when the cause is gone, or with Resume.");
   if (!first) return t("Nothing waits.");
@@ -72,7 +76,7 @@ const LEAST_SHARE = 0.02; // of which the rest is estimated
 // Seconds that are left of a run, if it goes on as so far; null where too little has been done.
 export function leftOf(bench: Bench, run: Run | null, nowMs: number): number | null {
   if (!run || bench.state === "emergency_stop") return null;
-  if (run.prompt || isHeld(run)) return null; // that takes as long as people take
+  if (run.prompt || isHeld(run) || isEnding(run)) return null; // that takes as long as people take
   const share = run.share ?? 0, began = run.started_at ? Date.parse(run.started_at) : NaN;
   if (share < LEAST_SHARE || !Number.isFinite(began)) return null;
   return Math.max(0, ((nowMs - began) / 1000) * ((1 - share) / share));
@@ -81,4 +85,12 @@ export function leftOf(bench: Bench, run: Run | null, nowMs: number): number | n
 // What the button does that resets a stop: the queue goes on.
 export function resetText(next: Run | null | undefined): string {
   return next ? t("It is safe: reset the emergency stop. Run {run} starts then.", { run: next.id }) : t("It is safe: reset the emergency stop");
+}
+
+// The speed that was measured last before or after a stop, beside what resets it.
+export function lastSpeedText(bench: Bench, nowMs: number): string {
+  const last = bench.last_speed;
+  if (!last) return t("The last speed of the motor is not known here. Look whether the axle stands.");
+  const values = { time: roughly(Math.max(0, (nowMs - Date.parse(last.at)) / 1000)), speed: figure(Math.abs(last.speed_rad_s), "rad/s") };
+  return last.turns ? t("At the last look, {time} ago, the motor turned at {speed}.", values) : t("At the last look, {time} ago, the motor stood.", values);
 }

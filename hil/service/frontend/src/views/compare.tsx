@@ -11,7 +11,7 @@ import { English } from "../i18n/english.tsx";
 import { t, tx } from "../i18n/text.ts";
 import { roleOf } from "../plot/frame.ts";
 import { useQuery } from "../router.ts";
-import { kindInWords } from "../ui/kinds.ts";
+import { runInWords } from "../ui/run-kind.ts";
 import { linkTo, Heading, Section } from "../ui/parts.tsx";
 import { recordingsFrom, type Beside } from "./compare-beside.ts";
 import { ChooseRecordings } from "./compare-recordings.tsx";
@@ -47,7 +47,7 @@ export function Compare(): JSX.Element {
   );
 }
 
-const named = (run: Run): string => `${run.id}: ${run.title || run.plan}, ${kindInWords(run.verdict ?? run.state)}${run.ended_at ? `, ${moment(run.ended_at)}` : ""}`;
+const named = (run: Run): string => `${run.id}: ${run.title || run.plan}, ${runInWords(run)}${run.ended_at ? `, ${moment(run.ended_at)}` : ""}`;
 
 const OFFERED = [["state", "ended"], ["state", "interrupted"], ["most", "100"]];
 

@@ -9,7 +9,7 @@ import { English } from "../../i18n/english.tsx";
 import { t } from "../../i18n/text.ts";
 import { useMay, useMe } from "../../session.ts";
 import { Admit, Expected } from "../team/expected.tsx";
-import { resetText } from "../bench-words.ts";
+import { Reset } from "../reset.tsx";
 import { whyItWaits, type Waiting } from "./waiting-words.ts";
 
 const AGAIN_MS = 2000;
@@ -28,16 +28,16 @@ export function WhyItWaits({ run }: { run: Run }): JSX.Element {
       {(found.kind === "stop" || found.kind === "in_use" || found.kind === "ending") && known?.why ? <p><English>{known.why}</English></p> : null}
       {found.ends ? <p>{found.ends}</p> : null}
       {run.expected_start ? <p><Expected run={run} /></p> : null}
-      <div class="row level"><Ending run={run} kind={found.kind} bench={known} running={running} path={path} /></div>
+      <div class="row level"><Ending run={run} kind={found.kind} bench={known} running={running} /></div>
     </section>
   );
 }
 
 // The action that ends the waiting, for whoever may do it.
-function Ending({ run, kind, bench, running, path }: { run: Run; kind: Waiting["kind"]; bench: Bench | null; running: Run | null; path: string }): JSX.Element | null {
+function Ending({ run, kind, bench, running }: { run: Run; kind: Waiting["kind"]; bench: Bench | null; running: Run | null }): JSX.Element | null {
   const may = useMay(), me = useMe();
   if (kind === "approval") return may("engineer") && (run.requested_by !== me.name || !me.tokens) ? <button type="button" class="main" onClick={() => void attempt(() => post(`/runs/${run.id}/approve`))}>{t("Approve")}</button> : null;
-  if (kind === "stop" && !running && may("engineer")) return <button type="button" class="main" onClick={() => void attempt(() => post(`${path}/reset`))}>{resetText(run)}</button>;
+  if (kind === "stop" && !running && may("engineer")) return bench ? <Reset bench={bench} next={run} /> : null;
   if (kind === "reservation") return <Admit run={run} />;
   if (running && kind === "run") return <a href={to.run(running.id)}>{t("Run {run}", { run: running.id })}</a>;
   return bench && kind !== "soon" ? <a href={to.bench(bench.name)}>{t("Bench {bench}", { bench: bench.name })}</a> : null;
