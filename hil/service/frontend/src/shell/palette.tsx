@@ -92,6 +92,9 @@ const named = async (path: string, kind: string, also: string, address: (name: s
 
 const TYPING_MS = 150;
 
+// The service looks for a text as a whole: the others of its words are looked for in what it finds by this one.
+const longestOf = (words: string): string => words.split(/\s+/).reduce((longest, one) => (one.length > longest.length ? one : longest), "");
+
 // The run of a number, and runs that have the words; without any the newest are offered.
 function useRuns(text: string): Entry[] {
   const [runs, setRuns] = useState<Entry[]>([]);
@@ -100,8 +103,8 @@ function useRuns(text: string): Entry[] {
     const control = new AbortController();
     const find = async () => {
       const numbered = number ? get<Run>(`/runs/${number}`, control.signal).then((run) => [run]) : null;
-      const worded = words ? get<FoundRuns>(`/run-list?${new URLSearchParams({ text: words, most: "5" })}`, control.signal).then(({ runs: all }) => all.map(({ run }) => run)) : null;
-      const asked = [numbered, worded, get<Run[]>("/runs?most=5", control.signal)].map((one) => one?.catch(() => []) ?? []);
+      const worded = [...new Set(words ? [words, longestOf(words)] : [])].map((one) => get<FoundRuns>(`/run-list?${new URLSearchParams({ text: one, most: "20" })}`, control.signal).then(({ runs: all }) => all.map(({ run }) => run)));
+      const asked = [numbered, ...worded, get<Run[]>("/runs?most=5", control.signal)].map((one) => one?.catch(() => []) ?? []);
       const all = (await Promise.all(asked)).flat();
       if (!control.signal.aborted) setRuns([...new Map(all.map((run) => [run.id, run])).values()].map(entryOf));
     };
