@@ -13,7 +13,9 @@ from tests.hil.service.served import SHORT, Served, served
 
 pytestmark = IN_A_BROWSER
 _SLOW = SHORT.replace("name: short", "name: slow\ntitle: Tip-in with 200 N m").replace(
-    "steps:", "steps:\n  - wait: {duration_s: 60}", 1
+    "steps:",
+    "steps:" + 90 * "\n  - wait: {duration_s: 1}",  # a pause begins between two steps
+    1,
 )
 
 
@@ -46,7 +48,7 @@ def test_a_decimal_comma_is_kept_on_the_german_page_of_an_english_browser(
     expect(page.locator(".forecast")).not_to_contain_text("Größtes angefordertes")
     assert queue.bounding_box() == before
     queue.click()
-    expect(page.locator(".facts")).to_contain_text("torque_nm = 20.5")
+    expect(page.locator(".facts")).to_contain_text("torque_nm = 20,5")
     there.over(int(page.url.rpartition("/")[2]))
 
 
