@@ -22,7 +22,7 @@ _SLOW = SHORT.replace("name: short", "name: slow\ntitle: Tip-in with 200 N m").r
 @pytest.fixture(scope="module")
 def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     folder = tmp_path_factory.mktemp("start")
-    with served(folder / "data", "--rate", "1000", state=folder / "state") as service:
+    with served(folder / "data", "--rate", "1", state=folder / "state") as service:
         service.give("short", SHORT)
         service.give("slow", _SLOW)
         yield service
