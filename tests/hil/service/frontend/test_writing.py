@@ -37,7 +37,7 @@ def test_mistakes_stand_at_their_lines_and_the_forecast_beside_them(
     expect(forecast).to_contain_text("Fits the bench", timeout=180_000)
     criteria = forecast.get_by_role("region", name="Criteria, table")
     expect(criteria).to_contain_text(re.compile(r"s\.peak_shaft_torque10\d.N m"))
-    forecast.get_by_role("spinbutton", name="torque_nm in N m").fill("150")
+    forecast.get_by_role("textbox", name="torque_nm in N m").fill("150")
     expect(criteria).to_contain_text(re.compile(r"s\.peak_shaft_torque15\d.N m"), timeout=180_000)
     written = text.input_value()
     text.fill(written.replace("hold_speed:", "hold_sped:"))

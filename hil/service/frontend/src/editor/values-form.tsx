@@ -5,6 +5,7 @@ import { useData } from "../data.ts";
 import { unitIn, wordsOf } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { t } from "../i18n/text.ts";
+import { NumberInput } from "../ui/number-field.tsx";
 import { Section } from "../ui/parts.tsx";
 import { changed, isNumber, scalarsOf, type Scalar } from "./scalars.ts";
 import type { Schema } from "./schema.ts";
@@ -29,7 +30,7 @@ function Field({ of, onValue }: { of: Scalar; onValue: (value: string) => void }
   return (
     <label class="field"><span>{name}</span>
       {choices ? <select value={bare} onChange={(event) => onValue(event.currentTarget.value)}>{choices.map((one) => <option key={one}>{one}</option>)}</select>
-        : isNumber(of) ? <input type="number" step="any" min={key.lower ?? undefined} max={key.upper ?? undefined} value={bare} onChange={(event) => { if (event.currentTarget.value) onValue(event.currentTarget.value); }} />
+        : isNumber(of) ? <NumberInput rested required min={key.lower ?? undefined} max={key.upper ?? undefined} value={bare} onText={(number) => { if (number) onValue(number); }} />
         : <input value={bare} onChange={(event) => onValue(event.currentTarget.value)} />}
     </label>
   );

@@ -23,6 +23,7 @@ const PHRASES: Phrase[] = [
   [/^(?<segment>\S+) was stopped$/, (of) => t("{segment} was stopped", of)],
   [/^confirmed by (?<names>.+)$/, (of) => t("confirmed by {names}", { names: named(of["names"]) })],
   [/^held, torque off, the dynos hold their speed: (?<cause>.+)$/s, (of) => t("held, torque off, the dynos hold their speed: {cause}", of)],
+  [/^held: (?<cause>.+)$/s, ({ cause = "" }) => t("held: {cause}", { cause: cause === "paused by the operator" ? t("paused by the operator") : cause })],
   [/^resumes after (?<seconds>\S+) s: (?<by>.+)$/, (of) => t("resumes after {seconds} s: {by}", of)],
   [/^the bench loop was delayed by (?<seconds>\S+) s$/, (of) => t("the bench loop was delayed by {seconds} s", of)],
   [/^executed: (?<steps>[^;]+); the wheels turn at (?<speed>\S+) rad\/s, the RMCU is in '(?<state>[^']+)'$/, (of) => t("executed: {steps}; the wheels turn at {speed} rad/s, the RMCU is in '{state}'", of)],

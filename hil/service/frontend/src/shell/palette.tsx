@@ -3,7 +3,7 @@
 import type { JSX } from "preact";
 import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import { get } from "../api/client.ts";
-import type { Bench, Plan, Run } from "../api/types.ts";
+import type { Bench, FoundRuns, Plan, Run } from "../api/types.ts";
 import { to } from "../addresses.ts";
 import { t } from "../i18n/text.ts";
 import { go } from "../router.ts";
@@ -90,16 +90,27 @@ const benches = async (): Promise<Entry[]> => (await get<Bench[]>("/benches")).m
 const plans = async (): Promise<Entry[]> => (await get<Plan[]>("/plans")).map((plan) => ({ kind: t("plan"), also: "plan", name: plan.name, about: plan.title, path: to.plan(plan.name) }));
 const named = async (path: string, kind: string, also: string, address: (name: string) => string): Promise<Entry[]> => (await get<{ name: string }[]>(path)).map(({ name }) => ({ kind, also, name, about: "", path: address(name) }));
 
-// A number is a run's; without one the newest are offered.
+const TYPING_MS = 150;
+
+// The service looks for a text as a whole: the others of its words are looked for in what it finds by this one.
+const longestOf = (words: string): string => words.split(/\s+/).reduce((longest, one) => (one.length > longest.length ? one : longest), "");
+
+// The run of a number, and runs that have the words; without any the newest are offered.
 function useRuns(text: string): Entry[] {
   const [runs, setRuns] = useState<Entry[]>([]);
-  const number = /[0-9]+/.exec(text)?.[0] ?? "";
+  const words = text.trim(), number = /[0-9]+/.exec(words)?.[0] ?? "";
   useEffect(() => {
     const control = new AbortController();
-    const asked = number ? get<Run>(`/runs/${number}`, control.signal).then((run) => [run]) : get<Run[]>("/runs?most=5", control.signal);
-    asked.then((all) => setRuns(all.map(entryOf))).catch(() => { if (!control.signal.aborted) setRuns([]); });
-    return () => control.abort();
-  }, [number]);
+    const find = async () => {
+      const numbered = number ? get<Run>(`/runs/${number}`, control.signal).then((run) => [run]) : null;
+      const worded = [...new Set(words ? [words, longestOf(words)] : [])].map((one) => get<FoundRuns>(`/run-list?${new URLSearchParams({ text: one, most: "20" })}`, control.signal).then(({ runs: all }) => all.map(({ run }) => run)));
+      const asked = [numbered, ...worded, get<Run[]>("/runs?most=5", control.signal)].map((one) => one?.catch(() => []) ?? []);
+      const all = (await Promise.all(asked)).flat();
+      if (!control.signal.aborted) setRuns([...new Map(all.map((run) => [run.id, run])).values()].map(entryOf));
+    };
+    const timer = setTimeout(() => void find(), words ? TYPING_MS : 0);
+    return () => { control.abort(); clearTimeout(timer); };
+  }, [words]);
   return runs;
 }
 

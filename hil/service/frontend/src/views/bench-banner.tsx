@@ -13,27 +13,28 @@ import { useMay, useMe } from "../session.ts";
 import { linkTo } from "../ui/parts.tsx";
 import { LimitedField } from "../ui/too-long.tsx";
 import { LONGEST_ANSWER, PromptCard } from "./panel-prompt.tsx";
-import { aboutBench, headlineOf, isEnding, isHeld, isReserved, nextIn, titleOf } from "./bench-words.ts";
+import { aboutBench, headlineOf, isCause, isEnding, isHeld, isReserved, messageOf, nextIn, nextOf, titleOf } from "./bench-words.ts";
 import { Reset } from "./reset.tsx";
 
 export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 }): JSX.Element {
-  const { bench, running, message } = state;
+  const { bench, running } = state, message = messageOf(state), held = isHeld(running) && bench.state === "running";
   const Title = level === 1 ? "h1" : "h2";
   return (
     <section class={`banner ${isReserved(bench) ? "in_use" : bench.state}`} aria-label={t("State of {bench}", { bench: bench.name })}>
       <p class="kind">{aboutBench(bench, bench.title || bench.name)}</p>
-      <Title class="headline" aria-live="polite">{headlineOf(bench, running ? titleOf(running) : null, isEnding(running))}</Title>
+      <Title class="headline" aria-live="polite">{headlineOf(bench, running ? titleOf(running) : null, isEnding(running), held)}</Title>
       {running ? <p>{tx("<a>Run {run}</a>, by {person}: {doing}", { a: linkTo(to.run(running.id)), run: running.id, person: running.requested_by, doing: <English>{running.doing}</English> })}</p> : null}
+      {held && !running?.prompt ? <p>{nextOf(state)}</p> : null}
       {bench.why && !(running && bench.state === "running") ? <p><English>{bench.why}</English></p> : null}
       {running ? <progress max={1} value={running.share ?? 0} aria-label={t("Progress of the run")} /> : null}
-      {running?.prompt ? <PromptCard prompt={running.prompt} run={running.id} reached={!bench.away_since} /> : message ? <p class="message" role="status"><English>{message}</English></p> : null}
+      {running?.prompt ? <PromptCard prompt={running.prompt} run={running.id} reached={!bench.away_since} /> : message && !isCause(message, running) ? <p class="message" role="status"><English>{message}</English></p> : null}
       <Actions state={state} answers={!running?.prompt} />
     </section>
   );
 }
 
 export function Actions({ state, answers = true }: { state: BenchState; answers?: boolean }): JSX.Element | null {
-  const { bench, running, message, queue } = state;
+  const { bench, running, queue } = state, message = messageOf(state);
   const may = useMay(), me = useMe();
   const name = encodeURIComponent(bench.name);
   const reached = !bench.away_since;
@@ -52,7 +53,7 @@ export function Actions({ state, answers = true }: { state: BenchState; answers?
   const mayRelease = bench.lease === me.name || may("engineer");
   return (
     <>
-      {answers && running && message && may("operator") && reached ? <AnswerForm run={running.id} /> : null}
+      {answers && running && message && !held && may("operator") && reached ? <AnswerForm run={running.id} /> : null}
       <div class="row">
         {running && may("operator") && reached && !held && !stopped ? <button type="button" disabled={ending} onClick={order("pause")}>{t("Pause")}</button> : null}
         {running && may("operator") && reached && held && !stopped ? <button type="button" class="main" disabled={ending} onClick={order("resume")}>{t("Resume")}</button> : null}

@@ -30,9 +30,13 @@ export function reservedText(bench: Bench): string {
 // The colours of a bench: its state, or that it waits for a person.
 export const lookOf = (bench: Bench, run: Run | null): string => (run?.prompt || isReserved(bench) ? "in_use" : bench.state);
 
-export function headlineOf(bench: Bench, title: string | null, ending = false): string {
+// `ending`: its run is being ended; `held`: it waits for a cause to be gone or for Resume.
+export function headlineOf(bench: Bench, title: string | null, ending = false, held = false): string {
   if (bench.stop_confirmed === false) return t("Emergency stop asked for, NOT CONFIRMED");
-  if (title !== null && bench.state === "running") return ending ? t("Being ended: {plan}", { plan: title }) : t("Running: {plan}", { plan: title });
+  if (title !== null && bench.state === "running") {
+    if (ending) return t("Being ended: {plan}", { plan: title });
+    return held ? t("Paused: {plan}", { plan: title }) : t("Running: {plan}", { plan: title });
+  }
   return isReserved(bench) ? reservedText(bench) : STATES[bench.state];
 }
 
@@ -53,6 +57,15 @@ export function wallWordOf(bench: Bench, run: Run | null): string {
 
 // The first that may start as it is; one that waits for somebody where none may.
 export const nextIn = (queue: Run[]): Run | undefined => queue.find((run) => run.state === "queued" && !run.waits_for) ?? queue[0];
+
+// What a run says for a terminal and for the page alike: without the keys of a terminal, which are buttons here.
+export const messageOf = ({ running, message }: Pick<BenchState, "running" | "message">): string =>
+  message.startsWith("held: ") && !isHeld(running) ? "" : message.split("\n").filter((line) => !KEYS.includes(line)).join("\n");
+
+// Only what the run is doing, which stands there already.
+export const isCause = (message: string, run: Run | null): boolean => message === run?.doing;
+
+const KEYS = ["r and Enter: resume; q and Enter: end the run", "resumes by itself when the cause is gone"];
 
 // What happens next, by itself or because somebody does something.
 export function nextOf({ bench, running, queue }: BenchState): string {

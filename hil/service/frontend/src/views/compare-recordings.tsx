@@ -6,6 +6,7 @@ import { to } from "../addresses.ts";
 import { useData } from "../data.ts";
 import { t } from "../i18n/text.ts";
 import { roleOf } from "../plot/frame.ts";
+import { NumberInput } from "../ui/number-field.tsx";
 import { recordingsText, type Beside } from "./compare-beside.ts";
 
 const MOST = 3;
@@ -25,7 +26,7 @@ export function ChooseRecordings({ chosen, runs, onChange }: Options): JSX.Eleme
     <div class="row small">
       {chosen.map(({ id, step }, at) => (
         <span key={id} class="chip"><span class={`swatch ${roleOf(runs + at)}`} /><a href={to.recording(id)} title={nameOf(id)}>{t("recording {number}", { number: id })}</a>{" "}
-          <label>{t("step at, s")} <input type="number" step="any" size={8} value={step} onChange={(event) => onChange(recordingsText(chosen.map((one) => (one.id === id ? { id, step: Number(event.currentTarget.value) || 0 } : one))))} /></label>
+          <label>{t("step at, s")} <NumberInput rested required size={8} value={String(step)} onText={(text) => { if (text) onChange(recordingsText(chosen.map((one) => (one.id === id ? { id, step: Number(text) } : one)))); }} /></label>
           <button type="button" class="plain" aria-label={t("Leave out recording {number}", { number: id })} onClick={() => onChange(recordingsText(chosen.filter((one) => one.id !== id)))}>×</button>
         </span>
       ))}

@@ -10,7 +10,7 @@ import { useLive, type BenchState, type Live } from "../live.ts";
 import { useStore } from "../store.ts";
 import { play, soundOf, soundOn, turnSound } from "../ui/sound.ts";
 import { Actions } from "./bench-banner.tsx";
-import { aboutBench, leftOf, lookOf, nextOf, titleOf, wordOf } from "./bench-words.ts";
+import { aboutBench, isCause, leftOf, lookOf, messageOf, nextOf, titleOf, wordOf } from "./bench-words.ts";
 import { PromptCard, useNow } from "./panel-prompt.tsx";
 import { NewestHandover } from "./team/handovers.tsx";
 
@@ -37,7 +37,7 @@ export function Panel({ bench }: { bench: string }): JSX.Element {
 }
 
 function State({ state }: { state: BenchState }): JSX.Element {
-  const { bench, running, message } = state, prompt = running?.prompt ?? null;
+  const { bench, running } = state, message = messageOf(state), prompt = running?.prompt ?? null;
   return (
     <section class={`banner ${lookOf(bench, running)}`} aria-label={t("State of {bench}", { bench: bench.name })}>
       <p class="kind">{aboutBench(bench, bench.title || bench.name)}</p>
@@ -46,7 +46,7 @@ function State({ state }: { state: BenchState }): JSX.Element {
       {bench.why && !running ? <p class="big"><English>{bench.why}</English></p> : null}
       <p class="big">{nextOf(state)}</p>
       {running && prompt ? <PromptCard prompt={prompt} run={running.id} reached={!bench.away_since} /> : null}
-      {running && message && !prompt ? <p class="message" role="status"><English>{message}</English></p> : null}
+      {running && message && !prompt && !isCause(message, running) ? <p class="message" role="status"><English>{message}</English></p> : null}
       <Actions state={state} answers={!prompt} />
     </section>
   );

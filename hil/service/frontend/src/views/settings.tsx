@@ -10,6 +10,7 @@ import { English } from "../i18n/english.tsx";
 import { chooseLanguage, chosenLanguage, LANGUAGES, type Language } from "../i18n/language.ts";
 import { t, tx } from "../i18n/text.ts";
 import { useMay, useMe } from "../session.ts";
+import { NumberInput } from "../ui/number-field.tsx";
 import { useStore } from "../store.ts";
 import { chooseTheme, theme, THEME_NAMES, THEMES } from "../theme.ts";
 import { People } from "./team/people.tsx";
@@ -107,7 +108,7 @@ function Tokens(): JSX.Element {
       <form class="row" onSubmit={(event) => void make(event)}>
         <LimitedField label={t("Name")} most={LONGEST_NAME} required value={name} onText={setName} />
         <label class="field">{t("Role")}<select value={role} onChange={(event) => setRole(event.currentTarget.value)}>{[...ROLES, "agent"].map((one) => <option key={one} value={one}>{kindInWords(one)}</option>)}</select></label>
-        <label class="field">{t("Days")}<input type="number" min={1} max={3650} required value={days} onInput={(event) => setDays(event.currentTarget.value)} /></label>
+        <label class="field">{t("Days")}<NumberInput min={1} max={3650} whole required value={days} onText={setDays} /></label>
         <button type="submit" class="main">{t("Make a token")}</button>
       </form>
       {made ? <p class="message" role="status">{tx("The token of {name}, shown this once: {secret}", { name: made.token.name, secret: <code>{made.secret}</code> })}</p> : null}

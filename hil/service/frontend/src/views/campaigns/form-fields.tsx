@@ -5,6 +5,7 @@ import type { Bench, Controller, Model, Plan } from "../../api/types.ts";
 import { useData } from "../../data.ts";
 import { English } from "../../i18n/english.tsx";
 import { t } from "../../i18n/text.ts";
+import { NumberInput } from "../../ui/number-field.tsx";
 import { inWords } from "../../ui/parts.tsx";
 import { boundsOf, isNumber, plainKeys, type Chosen, type Property, type Varied } from "./campaign-form.ts";
 
@@ -66,7 +67,7 @@ function Plain({ name, property, value, offered, required, onChange }: { name: s
       {offered
         ? <select value={value} required={required} onChange={take}><option value="">{usual || (required ? t("choose …") : t("the usual one"))}</option>{offered.map((one) => <option key={one}>{one}</option>)}</select>
         : isNumber(property)
-          ? <input type="number" step="any" {...described} {...bounds} placeholder={usual} value={value} onInput={take} />
+          ? <NumberInput {...(property.description ? { describedBy: about } : {})} {...bounds} placeholder={usual} value={value} onText={onChange} />
           : <input required={required} {...described} {...(name === "name" ? { pattern: "[A-Za-z0-9][A-Za-z0-9_.\\-]*" } : {})} placeholder={usual} autocomplete="off" value={value} onInput={take} />}
       </label>{property.description && !offered ? <span class="reason" id={about}><English>{property.description}</English></span> : null}
     </div>
@@ -91,7 +92,7 @@ function Tolerance({ of, chosen, drawn, onChange }: { of: Property; chosen: Reco
           <label class={property.type === "boolean" ? "tick" : "field"} key={name}>
             {property.type === "boolean"
               ? <><input type="checkbox" checked={chosen[name] === "true"} onChange={(event) => set(name, String(event.currentTarget.checked))} /><English>{inWords(name)}</English></>
-              : <><English>{`${inWords(name)}${property.description ? `, ${property.description}` : ""}`}</English><input type="number" step="any" {...boundsOf(property)} value={chosen[name] ?? ""} onInput={(event) => set(name, event.currentTarget.value)} /></>}
+              : <><English>{`${inWords(name)}${property.description ? `, ${property.description}` : ""}`}</English><NumberInput {...boundsOf(property)} value={chosen[name] ?? ""} onText={(text) => set(name, text)} /></>}
           </label>
         ))}
       </div>
@@ -109,9 +110,9 @@ function Vary({ rows, onChange }: { rows: Varied[]; onChange: (rows: Varied[]) =
       {rows.map((row, at) => (
         <div class="row" key={at}>
           <label class="field">{t("Name")}<input placeholder="model.vehicle_inertia" autocomplete="off" pattern="(controller|model|plan)\.[^.]+|effect\.[^.]+\.[^.]+" title="controller.NAME, model.NAME, effect.ID.NAME, plan.NAME" value={row.name} onInput={(event) => set(at, { name: event.currentTarget.value })} /></label>
-          <label class="field">{t("from")}<input type="number" step="any" value={row.from} onInput={(event) => set(at, { from: event.currentTarget.value })} /></label>
-          <label class="field">{t("to")}<input type="number" step="any" value={row.to} onInput={(event) => set(at, { to: event.currentTarget.value })} /></label>
-          <label class="field">{t("in so many values")}<input type="number" min={2} max={100_000} value={row.count} onInput={(event) => set(at, { count: event.currentTarget.value })} /></label>
+          <label class="field">{t("from")}<NumberInput value={row.from} onText={(from) => set(at, { from })} /></label>
+          <label class="field">{t("to")}<NumberInput value={row.to} onText={(to) => set(at, { to })} /></label>
+          <label class="field">{t("in so many values")}<NumberInput min={2} max={100_000} whole value={row.count} onText={(count) => set(at, { count })} /></label>
           <button type="button" class="plain" onClick={() => onChange(rows.filter((_, number) => number !== at))}>{t("Leave out")}</button>
         </div>
       ))}

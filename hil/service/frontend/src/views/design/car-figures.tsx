@@ -5,6 +5,7 @@ import type { CloudData } from "../../api/types.ts";
 import { figure, fixed, percent } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
 import { t, tn, tx } from "../../i18n/text.ts";
+import { NumberInput } from "../../ui/number-field.tsx";
 import { Badge, inWords, Scroll } from "../../ui/parts.tsx";
 import { CARS, SPREADS, type Spread } from "./car-spread.ts";
 import type { Rested } from "./use-rested.ts";
@@ -89,7 +90,7 @@ export function ChooseCars({ cars, spread, onCars, onSpread }: { cars: number; s
         <summary>{t("What differs from car to car")}</summary>
         <p class="quiet">{t("Empty: the tolerances of the model's file, else those of hil tune; standard errors of the model count in any case.")}</p>
         <div class="fields">
-          {SPREADS.map(({ name, most }) => <label class="field" key={name}>{NAMES[name]}<input type="number" min={0} max={most} step="any" value={spread?.[name] ?? ""} onChange={(event) => set(name, event.currentTarget.value)} /></label>)}
+          {SPREADS.map(({ name, most }) => <label class="field" key={name}>{NAMES[name]}<NumberInput rested min={0} max={most} value={String(spread?.[name] ?? "")} onText={(text) => set(name, text)} /></label>)}
         </div>
       </details>
     </>

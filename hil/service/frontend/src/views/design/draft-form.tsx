@@ -2,6 +2,7 @@
 
 import type { ComponentChildren, JSX } from "preact";
 import { t, tx } from "../../i18n/text.ts";
+import { NumberInput } from "../../ui/number-field.tsx";
 import { BOUNDS, fieldsOf, type Draft, type Field, type Kind } from "./drafts.ts";
 
 const sub = (words: ComponentChildren): JSX.Element => <sub>{words}</sub>;
@@ -37,7 +38,7 @@ export function DraftForm({ draft, resonance, onChange }: Options): JSX.Element 
           <div class="slide" key={field}>
             <label for={field}>{name}</label>
             <input type="range" min={from} max={to} step={step} value={beside} aria-label={t("{name}, slider", { name: spoken })} onInput={(event) => set(field, event.currentTarget.value)} />
-            <input id={field} type="number" min={least} max={most} step="any" required={usual !== ""} value={text} placeholder={usual === "" && resonance ? resonance.toFixed(2) : ""} onInput={(event) => set(field, event.currentTarget.value)} />
+            <NumberInput id={field} min={least} max={most} required={usual !== ""} value={text} placeholder={usual === "" && resonance ? resonance.toFixed(2) : ""} onText={(typed) => set(field, typed)} />
           </div>
         );
       })}

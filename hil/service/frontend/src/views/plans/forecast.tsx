@@ -22,21 +22,22 @@ interface Wanted {
 interface Foreseen {
   forecast: Forecast | null;
   error: string;
+  wrong?: string; // why a typed value is not taken
   refused: boolean; // the service would not queue it either, or it exceeds the bench
 }
 
 const NOTHING: Foreseen = { forecast: null, error: "", refused: false };
 
-export function useForecast(wanted: Wanted | null, form?: { current: HTMLFormElement | null }): Foreseen {
+// `wrong`: why a typed value is not taken; nothing is asked then.
+export function useForecast(wanted: Wanted | null, wrong = ""): Foreseen {
   const [found, setFound] = useState(NOTHING);
-  const key = JSON.stringify(wanted);
+  const key = JSON.stringify([wanted, wrong]);
   useEffect(() => {
-    setFound(NOTHING);
-    if (!wanted) return undefined;
+    setFound({ ...NOTHING, wrong, refused: wrong !== "" });
+    if (!wanted || wrong) return undefined;
     const control = new AbortController();
     const predict = async () => {
       try {
-        if (form && !form.current?.checkValidity()) throw new Error(t("A variable is beyond its bounds."));
         const forecast = await ask<Forecast>("POST", "/forecasts", wanted, control.signal);
         setFound({ forecast, error: "", refused: !forecast.fits });
       } catch (error) {
@@ -54,7 +55,8 @@ export function useForecast(wanted: Wanted | null, form?: { current: HTMLFormEle
 
 // Nobody has to wait for it: a run is queued while it is computed, and a run that exceeds its bench is refused there.
 // With criteria it says what each is predicted to be, else how many fail.
-export function ForecastShown({ of: { forecast, error }, criteria = false }: { of: Foreseen; criteria?: boolean }): JSX.Element {
+export function ForecastShown({ of: { forecast, error, wrong }, criteria = false }: { of: Foreseen; criteria?: boolean }): JSX.Element {
+  if (wrong) return <p class="bad">{wrong}</p>;
   if (error) return <p class="bad"><English>{error}</English></p>;
   if (!forecast) return <p class="quiet">{t("Predicting duration and peaks …")}</p>;
   const failing = forecast.criteria.filter((one) => one.verdict === "fail").length;

@@ -1,7 +1,7 @@
 // The form that starts a plan: what it will do is predicted first.
 
 import type { JSX } from "preact";
-import { useRef, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
 import { post } from "../../api/client.ts";
 import type { Bench, FoundRuns, Plan, Run } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
@@ -9,9 +9,10 @@ import { attempt, useData } from "../../data.ts";
 import { t } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { useMe } from "../../session.ts";
-import { durationOf, listed, torquesOf } from "./plan-facts.ts";
+import { listed, torquesOf } from "./plan-facts.ts";
 import { ForecastShown, useForecast } from "./forecast.tsx";
-import { valuesOf, VariableFields } from "./variable-fields.tsx";
+import { areUsual, valuesOf, wrongIn } from "./typed-values.ts";
+import { VariableFields } from "./variable-fields.tsx";
 
 // Of an earlier run: its bench, and values of its variables as texts.
 export interface StartedFrom {
@@ -32,11 +33,10 @@ export function StartPlan({ bench, plan, from }: { bench?: string; plan?: string
   const [chosenPlan, setPlan] = useState(plan ?? "");
   const [chosenBench, setBench] = useState(bench ?? from?.bench ?? "");
   const [texts, setTexts] = useState<Record<string, string>>(from?.values ?? {});
-  const form = useRef<HTMLFormElement>(null);
   const found = plans.find((one) => one.name === (chosenPlan || lastPlan));
   const where = chosenBench || benches[0]?.name || "";
   const wanted = found && where ? { plan: found.name, bench: where, values: valuesOf(found, texts) } : null;
-  const forecast = useForecast(wanted, form);
+  const forecast = useForecast(wanted, wrongIn(found, texts));
   const start = async (event: Event) => {
     event.preventDefault();
     if (!wanted) return;
@@ -44,7 +44,7 @@ export function StartPlan({ bench, plan, from }: { bench?: string; plan?: string
     if (run) go(to.run(run.id));
   };
   return (
-    <form ref={form} class="start" onSubmit={(event) => void start(event)}>
+    <form class="start" onSubmit={(event) => void start(event)}>
       {plan ? null : (
         <label class="field">{t("Plan")}
           <select required value={found?.name ?? ""} onChange={(event) => { setPlan(event.currentTarget.value); setTexts({}); }}>
@@ -60,11 +60,13 @@ export function StartPlan({ bench, plan, from }: { bench?: string; plan?: string
           </select>
         </label>
       )}
-      {found ? <p>{t("About {time}; largest torque asked for: {torques}.", { time: durationOf(found), torques: torquesOf(found) })}</p> : null}
       {plan || !found ? null : <p class="quiet"><a href={to.plan(found.name)}>{found.name}</a>{found.description ? `: ${found.description}` : ""}</p>}
       {found ? <VariableFields plan={found} texts={texts} onChange={setTexts} /> : null}
-      <div class="forecast" aria-live="polite">{found ? <ForecastShown of={forecast} /> : null}</div>
       <button type="submit" class="main" disabled={!wanted || forecast.refused}>{t("Queue the run")}</button>
+      <div class="forecast" aria-live="polite">
+        {found && areUsual(found, texts) ? <p>{t("Largest torque asked for: {torques}.", { torques: torquesOf(found) })}</p> : null}
+        {found ? <ForecastShown of={forecast} /> : null}
+      </div>
     </form>
   );
 }

@@ -11,6 +11,7 @@ import { t } from "../../i18n/text.ts";
 import { roleOf } from "../../plot/frame.ts";
 import { CurvePlot, type Curve } from "../../plot/curve-plot.tsx";
 import { useMay } from "../../session.ts";
+import { NumberInput } from "../../ui/number-field.tsx";
 
 const USUAL = ["motor_torque_ref_nm", "motor_speed_rad_s", "shaft_torque_nm", "wheel_speed_rad_s"];
 const MOST = 6;
@@ -33,8 +34,8 @@ export function Curves({ recording, others }: { recording: Recording; others: Re
       <div class="filters">
         <label class="field">{t("Another recording over it")}<select value={other} onChange={(event) => setOther(event.currentTarget.value)}><option value="">{t("none")}</option>{others.map((one) => <option key={one.id} value={one.id}>{`${one.id}: ${one.name}`}</option>)}</select></label>
         {may("engineer") ? <label class="field">{t("Model driven by its torque")}<select value={model} onChange={(event) => setModel(event.currentTarget.value)}><option value="">{t("none")}</option>{models.map((one) => <option key={one}>{one}</option>)}</select></label> : null}
-        <label class="field">{t("From, s")}<input type="number" step="any" value={from} onChange={(event) => setFrom(event.currentTarget.value)} /></label>
-        <label class="field">{t("Until, s")}<input type="number" step="any" value={until} onChange={(event) => setUntil(event.currentTarget.value)} /></label>
+        <label class="field">{t("From, s")}<NumberInput rested value={from} onText={setFrom} /></label>
+        <label class="field">{t("Until, s")}<NumberInput rested value={until} onText={setUntil} /></label>
       </div>
       <details><summary>{t("Channels that are shown")}</summary><div class="halves">{names.map((name) => <label class="tick" key={name}><input type="checkbox" checked={channels.includes(name)} onChange={(event) => turn(name, event.currentTarget.checked)} />{name}</label>)}</div></details>
       {failed ? <p class="bad" role="alert"><English>{failed.message}</English></p> : null}

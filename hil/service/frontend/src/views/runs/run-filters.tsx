@@ -6,6 +6,7 @@ import type { RunChoices } from "../../api/types.ts";
 import { useData } from "../../data.ts";
 import { t } from "../../i18n/text.ts";
 import { kindInWords } from "../../ui/kinds.ts";
+import { NumberInput } from "../../ui/number-field.tsx";
 import { isTooLong, LimitedField } from "../../ui/too-long.tsx";
 import { FILTERS, type Filter, type RunsQuery } from "./runs-query.ts";
 
@@ -63,5 +64,5 @@ function Typed({ label, type, value, onChange }: { label: string; type: "search"
   }, [text]);
   const take = (event: { currentTarget: HTMLInputElement }) => setText(event.currentTarget.value);
   if (type === "search") return <LimitedField label={label} most={LONGEST_WORDS} search value={text} onText={setText} />;
-  return <label class="field">{label}{type === "date" ? <input type="date" value={text} onInput={take} /> : <input type="number" step="any" value={text} onInput={take} />}</label>;
+  return <label class="field">{label}{type === "date" ? <input type="date" value={text} onInput={take} /> : <NumberInput value={text} onText={setText} />}</label>;
 }

@@ -9,6 +9,7 @@ import { attempt, useData } from "../../data.ts";
 import { t } from "../../i18n/text.ts";
 import { go, useQuery } from "../../router.ts";
 import { useMay } from "../../session.ts";
+import { NumberInput } from "../../ui/number-field.tsx";
 import { Heading, Loaded, Section } from "../../ui/parts.tsx";
 import { runsFrom } from "./chosen-runs.ts";
 import { Alternatives, Effects } from "./effects.tsx";
@@ -44,7 +45,7 @@ function Begin(): JSX.Element {
       <h2>{t("Find what a model lacks")}</h2>
       <div class="row">
         <label class="field">{t("Model")}<select value={model} onChange={(event) => setModel(event.currentTarget.value)}>{models.map((one) => <option key={one.name}>{one.name}</option>)}</select></label>
-        <label class="field">{t("Time limit, minutes")}<input type="number" min="0.1" max="60" step="any" required value={minutes} onInput={(event) => setMinutes(event.currentTarget.value)} /></label>
+        <label class="field">{t("Time limit, minutes")}<NumberInput min={0.1} max={60} required value={minutes} onText={setMinutes} /></label>
       </div>
       <div class="halves">
         <ChooseRuns legend={t("Runs to compare with the model")} chosen={runs} onChange={setRuns} without={holdout} />

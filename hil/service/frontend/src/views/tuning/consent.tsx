@@ -9,6 +9,7 @@ import { attempt } from "../../data.ts";
 import { duration, figure, wordsOf } from "../../format.ts";
 import { t, tn } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
+import { NumberInput } from "../../ui/number-field.tsx";
 import { Facts } from "../../ui/parts.tsx";
 import { LimitedField } from "../../ui/too-long.tsx";
 
@@ -33,7 +34,7 @@ export function Consent({ planned, disabled }: { planned: object; disabled: bool
     if (study) go(to.tuning(study.id));
   };
   const number = (label: string, value: string, most: number, onInput: (text: string) => void) => (
-    <label class="field">{label}<input type="number" min={1} max={most} step={1} required value={value} onInput={(event) => { onInput(event.currentTarget.value); setShown(null); }} /></label>
+    <label class="field">{label}<NumberInput min={1} max={most} whole required value={value} onText={(text) => { onInput(text); setShown(null); }} /></label>
   );
   return (
     <section class="card" aria-label={t("Autotune on a simulated bench")}>

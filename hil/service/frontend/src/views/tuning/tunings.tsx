@@ -9,6 +9,7 @@ import { attempt, useData } from "../../data.ts";
 import { English } from "../../i18n/english.tsx";
 import { t } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
+import { NumberInput } from "../../ui/number-field.tsx";
 import { useMay } from "../../session.ts";
 import { kindInWords } from "../../ui/kinds.ts";
 import { Badge, Heading, Moment, Scroll, Section } from "../../ui/parts.tsx";
@@ -61,8 +62,8 @@ function Begin(): JSX.Element {
           {choice(t("Plan"), plan, plans.map((one) => one.name), setPlan)}
           {choice(t("Model"), model, models.filter((one) => one.kind !== "transfer_function").map((one) => one.name), setModel)}
           {choice(t("Simulated bench"), on, benches.map((one) => one.name), setBench)}
-          <label class="field">{t("Cars drawn around the model")}<input type="number" min={0} max={500} step={1} required value={draws} onInput={(event) => setDraws(event.currentTarget.value)} /></label>
-          <label class="field">{t("Time limit in minutes")}<input type="number" min={0.1} max={120} step="any" required value={minutes} onInput={(event) => setMinutes(event.currentTarget.value)} /></label>
+          <label class="field">{t("Cars drawn around the model")}<NumberInput min={0} max={500} whole required value={draws} onText={setDraws} /></label>
+          <label class="field">{t("Time limit in minutes")}<NumberInput min={0.1} max={120} required value={minutes} onText={setMinutes} /></label>
         </div>
         <fieldset class="ticks"><legend>{t("May get worse than with the plan's controller")}</legend>
           {Object.entries(KEPT).map(([name, words]) => <label class="tick" key={name}><input type="checkbox" checked={letGo.includes(name)} onChange={(event) => setLetGo(event.currentTarget.checked ? [...letGo, name] : letGo.filter((one) => one !== name))} />{words}</label>)}

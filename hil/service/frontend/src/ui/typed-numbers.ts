@@ -1,0 +1,39 @@
+// Numbers as people type them: a decimal comma is a decimal point, and what may mean two numbers is refused.
+
+import { LANGUAGE } from "../i18n/language.ts";
+import { t } from "../i18n/text.ts";
+
+const NUMBER = /^([-+]?)(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i;
+const MAY_GROUP = /^[-+]?[1-9]\d{0,2},\d{3}$/; // "1,200" is 1200 to some readers and 1.2 to others
+
+export interface Bounds {
+  min?: number | undefined;
+  max?: number | undefined;
+  whole?: boolean;
+  required?: boolean;
+}
+
+const commaGroups = new Intl.NumberFormat(LANGUAGE).formatToParts(1234567).some(({ type, value }) => type === "group" && value === ",");
+
+// As it is written with a decimal point; null for no number, and for one that may be another.
+export function pointed(typed: string, groups = commaGroups): string | null {
+  const text = typed.normalize("NFKC").trim().replace(/[−–]/g, "-");
+  if (groups && MAY_GROUP.test(text)) return null;
+  const [, sign = "", digits = "", power = ""] = NUMBER.exec(text.replace(/^([-+]?\d*),(\d*)/, "$1.$2")) ?? [];
+  if (!digits || !Number.isFinite(Number(digits + power))) return null;
+  return (sign === "-" ? "-" : "") + digits.replace(/^\./, "0.").replace(/\.$/, "") + power;
+}
+
+export const numberIn = (typed: string): number => { const text = pointed(typed); return text === null ? NaN : Number(text); };
+
+// Why a field's text is not taken; '' if it is.
+export function whyNoNumber(typed: string, { min, max, whole = false, required = false }: Bounds, groups = commaGroups): string {
+  if (typed.trim() === "") return required ? t("It is empty: write a number.") : "";
+  const text = pointed(typed, groups);
+  if (text === null) return MAY_GROUP.test(typed.trim()) ? t("\"{typed}\" may be two numbers: write {point} or {plain}.", { typed, point: typed.trim().replace(",", "."), plain: typed.trim().replace(",", "") }) : t("\"{typed}\" is no number: write it as 20.5, without other signs.", { typed });
+  const value = Number(text);
+  if (whole && !Number.isInteger(value)) return t("{value} is no whole number.", { value: text });
+  if ((min === undefined || value >= min) && (max === undefined || value <= max)) return "";
+  if (min === undefined) return t("{value} is beyond its bound: at most {max}.", { value: text, max: max ?? "" });
+  return max === undefined ? t("{value} is beyond its bound: at least {min}.", { value: text, min }) : t("{value} is beyond its bounds: {min} to {max}.", { value: text, min, max });
+}
