@@ -59,6 +59,7 @@ def test_a_plan_is_foreseen_queued_watched_stopped_and_found(page: playwright.Pa
     expect(heading(report.value, re.compile("A plan that asks"))).to_be_visible()
     report.value.close()
     to(page, there, "#sim")  # as the former page had it
+    page.on("dialog", lambda asked: asked.accept())  # whether the axle stands, if it was not seen to
     page.get_by_role("button", name="It is safe: reset the emergency stop").click()
     expect(heading(page, "Free")).to_be_visible()
 
