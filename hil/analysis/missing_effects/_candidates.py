@@ -93,7 +93,7 @@ class Candidates:
         best = before = self.judged(point)
         problem = self.problem
         if goes_on:
-            problem = problem.weighed_by(point.powers(problem).spectrum(problem.noise))
+            problem = self.weighed_as(best)
         elif hypothesis.kind == "rigid":  # slow errors of a mass are friction; a chain's bend its resonances
             problem = problem.weighed_by(white(problem.noise, problem.rate_hz))
         for number in range(rounds if rounds < ROUNDS else MOST_ROUNDS):
@@ -105,7 +105,7 @@ class Candidates:
             if abs(growth) < _SETTLED or (number >= ROUNDS - 1 and growth < GROWING):
                 break
             before = after
-            problem = self.problem.weighed_by(point.powers(problem).spectrum(problem.noise))
+            problem = self.weighed_as(after)
         key = tuple(sorted(best.names))
         self.found[key] = max(self.found.get(key, best), best, key=self.score)
         return best

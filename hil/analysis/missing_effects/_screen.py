@@ -189,9 +189,8 @@ class _Projection:
             starts = np.repeat(self.at.point.starts[index][None], len(packed), axis=0)
             shown = self.problem.simulated(index, packed, starts, keep=False)
             change = self.problem.weighed(index, shown - self.plain[index])
-            by_starts = (
-                change @ self.at.bases[index]
-            )  # what starts could do; misfit and slopes are without it
+            # what starts could do; misfit and slopes are without it
+            by_starts = change @ self.at.bases[index]
             here = slice(*self.ends[index : index + 2])
             return (
                 change @ change.T - by_starts @ by_starts.T,

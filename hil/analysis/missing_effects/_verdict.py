@@ -60,12 +60,12 @@ class Judged:
 def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     """The outcome of a search."""
     done = of.done
-    as_the_base = as_the_base_has(done, done.best) if _may_be_off(of, done.best) else frozenset[str]()
-    best, shares = _worth_telling(of, done.best)
+    at = linearised(done.weighed_as(done.best), done.best.point)
+    as_the_base = as_the_base_has(done, done.best) if _may_be_off(of, at) else frozenset[str]()
+    best, at, shares = _worth_telling(of, done.best)
     _swapped(done, best)
     candidates = list(done.found.values())
     weights = weights_of(candidates, done.values)
-    at = linearised(done.weighed_as(best), best.point)
     rivals = _alike(done, best, candidates)
     effects: list[Named] = []
     doubtful: list[Named] = []
@@ -74,7 +74,7 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
         (effects if named.confidence >= HALF else doubtful).append(named)
     numbers = numbers_of(at, of.asked)
     far = is_far(numbers, done)
-    if not far and done.problem.is_noise(best.point.errors):
+    if _may_be_off(of, at):
         effects += mismatches(done, numbers, best, as_the_base)
     if done.problem.is_noise(best.point.errors):
         effects += _roundings(done, float(weights[candidates.index(best)]))
@@ -93,16 +93,17 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     )  # fmt: skip
 
 
-def _may_be_off(of: Judged, best: Candidate) -> bool:
+def _may_be_off(of: Judged, at: Linearised) -> bool:
     """Whether single numbers of the base may be wrong: what has no name bends them, a far base has none."""
-    at = linearised(of.done.weighed_as(best), best.point)
-    return of.done.problem.is_noise(best.point.errors) and not is_far(numbers_of(at, of.asked), of.done)
+    return of.done.problem.is_noise(at.point.errors) and not is_far(numbers_of(at, of.asked), of.done)
 
 
-def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, list[float]]:
+def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, Linearised, list[float]]:
     """Without effects that take off less than half of what stays without them; shares of the others."""
-    while best.names:
+    while True:
         at = linearised(of.done.weighed_as(best), best.point)
+        if not best.names:
+            return best, at, []
         fewer = [_without(of.done, best, index) for index in range(len(best.names))]
         wrong = _wrong_by_laws(of, best, fewer)
         shares = [
@@ -114,9 +115,8 @@ def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, list[float]]
         ]
         least = int(np.argmin(shares))
         if shares[least] >= HALF:
-            return best, shares
+            return best, at, shares
         best = _without(of.done, best, least)
-    return best, []
 
 
 def _wrong_by_laws(of: Judged, best: Candidate, fewer: Sequence[Candidate]) -> Array:

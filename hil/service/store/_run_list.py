@@ -100,19 +100,20 @@ class RunList:
     def criteria_beside(self, run: int) -> str:
         """Criteria of a run, and those of the newest runs that passed and have one of its first, as JSON.
 
-        By numbers of runs, of each criterion what `_JUDGED` lists. A text: what reads it is another process,
-        and the service's loop does not go through it.
+        By numbers of runs, of each criterion what `_JUDGED` lists, by name. A text: what reads it is another
+        process, and the service's loop does not go through it.
         """
         of_run = select(*_JUDGED).where(CriterionRow.run == run).order_by(CriterionRow.id)
         with self._transaction() as session:
-            found: dict[int, list[list[Any]]] = {run: [list(row) for row in session.execute(of_run)]}
+            found = {run: [dict(row) for row in session.execute(of_run).mappings()]}
             if found[run]:
                 passed = select(RunRow.id).join(CriterionRow, CriterionRow.run == RunRow.id)
-                passed = passed.where(CriterionRow.id == found[run][0][0], RunRow.verdict == "pass")
+                passed = passed.where(CriterionRow.id == found[run][0]["id"], RunRow.verdict == "pass")
                 numbers = passed.where(RunRow.id != run).order_by(RunRow.id.desc()).limit(_MOST_PASSED)
                 beside = select(CriterionRow.run, *_JUDGED).where(CriterionRow.run.in_(numbers))
-                for number, *row in session.execute(beside):
-                    found.setdefault(number, []).append(row)
+                for row in session.execute(beside).mappings():
+                    judged = dict(row)
+                    found.setdefault(judged.pop("run"), []).append(judged)
         return json.dumps(found)
 
 

@@ -8,8 +8,6 @@ from typing import Any
 from hil.core.result import CriterionResult
 from hil.service.best_run import best_run
 
-_FIELDS = ("id", "value", "unit", "upper", "lower", "verdict")
-
 
 def best(run: int, passed: bool, criteria: str) -> dict[str, Any]:
     """Number, margin and criterion of the best run, and among how many; the number is None if there is none.
@@ -19,13 +17,12 @@ def best(run: int, passed: bool, criteria: str) -> dict[str, Any]:
         passed: whether that run is one of those that passed.
         criteria: `RunList.criteria_beside`.
     """
-    found = {int(number): [_criterion(row) for row in rows] for number, rows in json.loads(criteria).items()}
+    found = {
+        int(number): [CriterionResult.model_validate(one) for one in judged]
+        for number, judged in json.loads(criteria).items()
+    }
     wanted = found[run] if passed else found.pop(run)
     one, among = best_run(wanted, found)
     if one is None:
         return {"run": None, "among": among}
     return {"run": one.run, "margin": one.margin, "criterion": one.criterion, "among": among}
-
-
-def _criterion(row: list[object]) -> CriterionResult:
-    return CriterionResult.model_validate(dict(zip(_FIELDS, row, strict=True)))
