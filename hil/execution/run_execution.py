@@ -11,7 +11,7 @@ from typing import Literal, Protocol
 
 from hil.api_schemas.agent import TakenRun
 from hil.api_schemas.api import PromptData, RunData
-from hil.core.errors import EmergencyStopError, HilError
+from hil.core.errors import BenchError, EmergencyStopError, HilError
 from hil.core.files import make_directory, write_atomically
 from hil.core.result import RunResult
 from hil.engine import RECORDING
@@ -21,6 +21,7 @@ from hil.execution.benches import Bench
 from hil.execution.run_process import RunProcess, result_in
 
 PLAN = "plan.yaml"
+STOPPED_BEFORE = "stopped before it began"
 _NOTHING = "the {who} ended before the recording started; the run can be queued again"
 _KEPT = "the {who} ended during the run; data measured before that is kept"
 
@@ -68,7 +69,7 @@ class RunningRun:
 
 @dataclass(frozen=True)
 class RunEnd:
-    """How a run ended, and when if not just now; `queued` if nothing has happened and it is to wait again."""
+    """How a run ended, and when if not just now; `queued` if another program was quicker: it waits again."""
 
     state: Literal["ended", "interrupted", "queued"]
     exit_code: int | None = None
@@ -127,8 +128,13 @@ class RunExecution(RunningRun):
             changed()
         code = await self.process.exit_code()
         result, recorded = result_in(self.folder), (self.folder / RECORDING).exists()
-        if refused is not None and not recorded and not closing() and _keeps_waiting(refused, bench):
-            return RunEnd("queued", reason=str(refused))
+        if refused is not None and not recorded and not closing():
+            if isinstance(refused, EmergencyStopError) or (
+                isinstance(refused, BenchError) and bench.stopped()
+            ):
+                return RunEnd("ended", code, reason=_stopped_before(refused), dut=bench.dut)
+            if bench.used_by():  # another program was quicker
+                return RunEnd("queued", reason=str(refused))
         reason = "" if result is not None else str(refused or f"its process ended with code {code}")
         if result is None and recorded:
             reason += f"\n  hil evidence recover {self.folder} recovers the recording of what was measured"
@@ -138,12 +144,13 @@ class RunExecution(RunningRun):
         self.message, self.prompt = "", None
 
 
-def _keeps_waiting(refused: HilError, bench: Bench) -> bool:
-    """Whether a run that has not begun waits again: its bench is used, or a stop was latched before it.
+def _stopped_before(refused: HilError) -> str:
+    """Why a run is over of which the bench was stopped after it was taken and before it measured anything.
 
-    A run that was itself stopped is over.
+    It does not wait for the reset: nothing may move by itself because somebody has reset a stop.
     """
-    return bool(bench.used_by() or (bench.stopped() and not isinstance(refused, EmergencyStopError)))
+    fix = f"\n  {refused.fix}" if refused.fix else ""
+    return f"{STOPPED_BEFORE}: {refused.what}{fix}"
 
 
 def _asked(question: Question | None) -> PromptData | None:

@@ -18,6 +18,7 @@ from pathlib import Path
 from hil.api_schemas.agent import TakenRun
 from hil.api_schemas.api import BenchState, RunData
 from hil.core.errors import BenchError, HilError
+from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.execution.benches import Bench
 from hil.execution.data_folder import folder_of
 from hil.execution.run_execution import RunEnd, RunExecution, RunningRun, end_of_left
@@ -46,6 +47,7 @@ class _Place:
     held_by: str = ""  # another service of the same database
     held_s: float = -1e9
     dropped: bool = False  # taken out of service
+    stopped_by: EmergencyAsked | None = None  # while the run's process was being started
     unsure: int | None = None  # taken while the database went away: perhaps so, and certainly not started
 
 
@@ -125,6 +127,10 @@ class Queue:
         """A run by its number, if it is under way."""
         found = (place.running for place in self._places.values())
         return next((one for one in found if one is not None and one.data.id == run), None)
+
+    def stop_next(self, bench: str, asked: EmergencyAsked) -> None:
+        """Stop the run of which the process is just being started, if there is one."""
+        self._places[bench].stopped_by = asked
 
     def state(self, bench: str) -> tuple[BenchState, str]:
         """What a bench does, and why it may not be driven."""
@@ -208,7 +214,7 @@ class Queue:
         return place.used_by
 
     async def _begin(self, place: _Place, taken: TakenRun) -> None:
-        run = taken.data
+        run, place.stopped_by = taken.data, None
         try:
             taken = taken.model_copy(update={"plan_source": str(self._source(run.plan))})
             place.running = await self._begin_run(place.bench, taken)
@@ -224,6 +230,8 @@ class Queue:
             await self._written(lambda: self._runs.end(run.id, "ended", exit_code=code, reason=why))
             self._changed(run.bench)
             return
+        if place.stopped_by is not None:
+            place.running.process.stop_in_emergency(place.stopped_by)
         logger.info("run %d begins on %s", run.id, run.bench)
         self._changed(run.bench)
         task = asyncio.create_task(in_turns(self._watch(place, place.running)))

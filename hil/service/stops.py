@@ -41,10 +41,12 @@ class Stops:
             stop_post.stopped = self._of_post
 
     def tell_run(self, bench: str, asked: EmergencyAsked) -> None:
-        """Tell the run under way, if there is one; asks no one anything before."""
+        """Tell the run under way or just being started, if there is one; asks no one anything before."""
         running = self._service.running(bench)
         if running is not None:
             running.process.stop_in_emergency(asked)
+        elif self._service.own(bench) is not None:
+            self._service.queue.stop_next(bench, asked)
 
     async def stop(self, bench: str, asked: EmergencyAsked, role: str) -> None:
         """Have a bench safe at once and keep it so, whatever its run is doing and whether there is one.

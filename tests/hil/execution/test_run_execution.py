@@ -1,16 +1,19 @@
-"""What is said of a run whose service or agent was killed."""
+"""How a run ends whose service or agent was killed, or that meets what keeps it from beginning."""
 
 from __future__ import annotations
 
 import asyncio
 import datetime
 import os
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
 import pytest
 
 from hil.api_schemas.agent import TakenRun
 from hil.api_schemas.api import RunData
+from hil.engine.bench.bench_lock import alone_on
 from hil.execution.benches import Bench
 from hil.execution.run_execution import RunEnd, RunExecution, end_of_left
 from tests.hil.service.served import SHORT
@@ -35,8 +38,10 @@ def test_of_one_that_left_nothing_no_moment_is_known(tmp_path: Path) -> None:
     assert "before the recording started" in end.reason
 
 
-@pytest.mark.slow
-def test_a_run_that_meets_a_stop_latched_meanwhile_waits_again(tmp_path: Path) -> None:
+def _end_of_one_that_meets(
+    met: Callable[[Bench], AbstractContextManager[object]], folder: Path, of: str = "sim"
+) -> RunEnd:
+    """Of a run that is executed while something stands in its way that was not there when it was taken."""
     data = RunData.model_validate(
         {
             "id": 1, "plan": "short", "title": "", "bench": "sim", "state": "running", "values": {},
@@ -46,13 +51,29 @@ def test_a_run_that_meets_a_stop_latched_meanwhile_waits_again(tmp_path: Path) -
     taken = TakenRun(
         data=data, plan_text=SHORT, plan_source="short.yaml", confirmed_by="", accept_expired="", files={}
     )
-    bench = Bench("sim", tmp_path / "stops")
+    bench = Bench(of, folder / "stops")
 
     async def ended() -> RunEnd:
-        bench.stop("anna", tmp_path)  # after the bench was looked at, before the run's process does
-        run = await RunExecution.begin(taken, bench, tmp_path / "run")
+        run = await RunExecution.begin(taken, bench, folder / "run")
         return await run.ended(bench, lambda: None, lambda: False)
 
-    end = asyncio.run(ended())
+    with met(bench):
+        return asyncio.run(ended())
+
+
+@pytest.mark.slow
+def test_a_run_that_meets_a_stop_latched_meanwhile_is_over(tmp_path: Path) -> None:
+    def stop(bench: Bench) -> AbstractContextManager[object]:
+        bench.stop("anna", tmp_path)  # after the bench was looked at, before the run's process does
+        return nullcontext()
+
+    end = _end_of_one_that_meets(stop, tmp_path)
+    assert (end.state, end.result) == ("ended", None)
+    assert end.reason.startswith("stopped before it began: emergency stop since")
+    assert "by anna" in end.reason
+
+
+@pytest.mark.slow
+def test_a_run_that_meets_another_program_waits_again(tmp_path: Path) -> None:
+    end = _end_of_one_that_meets(lambda bench: alone_on(bench.file), tmp_path, of="rear_axle_socketcan")
     assert end.state == "queued"
-    assert "emergency stop since" in end.reason
