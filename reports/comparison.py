@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from hil.analysis.comparison import Comparison, CriterionRow, ResponseRow, differences, plan_differences
+from hil.analysis.comparison import Comparison, CriterionRow, ResponseRow, differences, plan_summary
 from hil.core.result import Segment
 from reports import labels
 from reports.labels import channel_label, criterion_title
@@ -14,7 +14,6 @@ from reports.overlay_figures import overlay
 from reports.parts import Page, Part, Table, page_html, page_pdf
 
 _ROWS = 12  # of the first screen
-_SAID = 4  # differences of a plan; the report's tables have all
 _MOST_INPUTS, _LONGEST_VALUE = 40, 60
 _MARKS = {"fail": " ✗", "undecided": " ?", "error": " !", "not_judged": " –"}
 
@@ -46,10 +45,10 @@ def plans_apart(found: Comparison) -> tuple[str, ...]:
     """What each further run's plan does or demands otherwise than the first one's, a line each."""
     lines = []
     for run in found.runs[1:]:
-        apart = plan_differences(found.runs[0], run)
-        if apart:
-            more = f"; and {len(apart) - _SAID} more" if len(apart) > _SAID else ""
-            lines.append(f"The plan of {run.name} differs: {'; '.join(map(str, apart[:_SAID]))}{more}.")
+        apart = plan_summary(found.runs[0], run)
+        if apart.shown:
+            more = f"; and {apart.more} more" if apart.more else ""
+            lines.append(f"The plan of {run.name} differs: {'; '.join(map(str, apart.shown))}{more}.")
     return tuple(lines)
 
 

@@ -76,6 +76,10 @@ class ComparisonData(_Data):
     verdicts: tuple[str, str]
     distance: float | None = Field(description="mean magnitude of the relative differences of the criteria")
     differences: list[InputDifference]
+    plan_summary: list[InputDifference] = Field(
+        description="of the differences the first by which the other's plan does or demands something else"
+    )
+    plan_more: int = Field(description="how many more such differences there are")
     notes: list[str]
     criteria: list[ComparedCriterion]
     responses: list[ComparedResponse]

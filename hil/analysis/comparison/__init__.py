@@ -11,10 +11,11 @@ from hil.analysis.comparison._comparison import (
 from hil.analysis.comparison._runs import (
     ComparedRun,
     Difference,
+    PlanSummary,
     controllers_that_differ,
     differences,
     names_by_variables,
-    plan_differences,
+    plan_summary,
 )
 
 __all__ = [
@@ -22,6 +23,7 @@ __all__ = [
     "Comparison",
     "CriterionRow",
     "Difference",
+    "PlanSummary",
     "ResponseRow",
     "aligned",
     "compare",
@@ -29,5 +31,5 @@ __all__ = [
     "difference",
     "differences",
     "names_by_variables",
-    "plan_differences",
+    "plan_summary",
 ]

@@ -100,6 +100,7 @@ _NOT_COMPARED = ("meta", "format")
 _LONGEST = 200
 #: Of a plan: called otherwise, not otherwise done.
 _NAMES = ("name", "title", "description")
+_SHOWN = 4  # differences of a plan in a sentence; tables have all
 
 
 @dataclass(frozen=True)
@@ -136,9 +137,18 @@ def differences(first: ComparedRun, other: ComparedRun) -> tuple[Difference, ...
 _FILES: dict[Kind, str] = {"model": "model.toml", "bench": "bench.toml"}
 
 
-def plan_differences(first: ComparedRun, other: ComparedRun) -> tuple[Difference, ...]:
+@dataclass(frozen=True)
+class PlanSummary:
+    """How the other's plan differs, for a sentence: the first values, and how many more there are."""
+
+    shown: tuple[Difference, ...]
+    more: int
+
+
+def plan_summary(first: ComparedRun, other: ComparedRun) -> PlanSummary:
     """What the other's plan does or demands otherwise, whatever it is called."""
-    return tuple(one for one in _of_plans(first, other) if one.name not in _NAMES)
+    found = tuple(one for one in _of_plans(first, other) if one.name not in _NAMES)
+    return PlanSummary(found[:_SHOWN], max(0, len(found) - _SHOWN))
 
 
 def _of_plans(first: ComparedRun, other: ComparedRun) -> Iterator[Difference]:

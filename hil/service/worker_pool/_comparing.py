@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from hil.analysis.comparison import ComparedRun, aligned, compare, differences
+from hil.analysis.comparison import ComparedRun, aligned, compare, differences, plan_summary
 from hil.core.channels import TIME, unit_of
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
@@ -31,6 +31,7 @@ def comparison(first: list[str], other: list[str]) -> dict[str, Any]:
     except BadInputError as error:
         raise _by_name(error, one, two) from None
     all_differences = differences(one, two)
+    of_plan = plan_summary(one, two)
     left = len(all_differences) - _MOST_DIFFERENCES
     more = [f"{left} more differences of the inputs are not listed."] if left > 0 else []
     return {
@@ -38,6 +39,8 @@ def comparison(first: list[str], other: list[str]) -> dict[str, Any]:
         "verdicts": [one.result.verdict, two.result.verdict],
         "distance": found.distances[1],
         "differences": [vars(each) for each in all_differences[:_MOST_DIFFERENCES]],
+        "plan_summary": [vars(each) for each in of_plan.shown],
+        "plan_more": of_plan.more,
         "notes": [*found.notes, *more],
         "criteria": [
             {

@@ -13,7 +13,7 @@ from hil.analysis.comparison import (
     difference,
     differences,
     names_by_variables,
-    plan_differences,
+    plan_summary,
 )
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
@@ -123,7 +123,7 @@ def test_a_segment_that_a_run_lacks_has_no_gap():
 
 
 def test_another_title_is_the_same_plan():
-    assert plan_differences(run("one"), run("two", plan=PLAN + b"title: again\n")) == ()
+    assert plan_summary(run("one"), run("two", plan=PLAN + b"title: again\n")).shown == ()
 
 
 def test_controllers_that_differ_are_noted():

@@ -27,6 +27,7 @@ def test_criteria_stand_side_by_side_and_what_was_given_differently_is_named(
     assert [(one.kind, one.name, one.first, one.other) for one in found.differences] == [
         ("plan", "variables.torque_nm.default", "100", "120")
     ]
+    assert (found.plan_summary, found.plan_more) == (found.differences, 0)
     peak = found.criteria[0]
     assert peak.relative == pytest.approx(peak.values[1] / peak.values[0] - 1)  # type: ignore[operator]
     assert (peak.better, peak.source) == ("lower", "plan")

@@ -1,5 +1,5 @@
 // How two runs differ: of a criterion the other minus the first, in its unit, and whether that is better; of what they
-// were given what is said in sentences, and what stands in the table.
+// were given what stands in the table.
 
 import type { Comparison } from "../api/types.ts";
 import { figure, percent } from "../format.ts";
@@ -29,17 +29,10 @@ export function changeText({ by }: Change, { unit, relative }: Pick<Row, "unit" 
 
 export type Difference = Comparison["differences"][number];
 
-const SAID = 4;
-const NAMES = ["name", "title", "description"]; // called otherwise, not otherwise done
-
 export const keyOf = (one: Difference): string => `${one.kind} ${one.name}`;
 
-export const ofPlan = ({ differences }: Pick<Comparison, "differences">): Difference[] => differences.filter((one) => one.kind === "plan" && !NAMES.includes(one.name));
-
-export const saidOf = (pair: Pick<Comparison, "differences">): Difference[] => ofPlan(pair).slice(0, SAID);
-
-// Nothing is said twice.
-export function tabledOf(pair: Pick<Comparison, "differences">): Difference[] {
-  const said = saidOf(pair);
-  return pair.differences.filter((one) => !said.includes(one));
+// Nothing stands twice: what the service puts into the sentence about the plan is not in the table.
+export function tabledOf({ differences, plan_summary: summary }: Pick<Comparison, "differences" | "plan_summary">): Difference[] {
+  const shown = new Set(summary.map(keyOf));
+  return differences.filter((one) => !shown.has(keyOf(one)));
 }

@@ -6,7 +6,7 @@ import { joined } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { t, tn } from "../i18n/text.ts";
 import { Scroll, Section } from "../ui/parts.tsx";
-import { changeOf, keyOf, ofPlan, saidOf, tabledOf, type Change, type Difference } from "./compare-changes.ts";
+import { changeOf, keyOf, tabledOf, type Change, type Difference } from "./compare-changes.ts";
 
 const NOTHING = "–";
 const valueOf = (text: string, unit = ""): string => (text === NOTHING ? text : joined(text, unit));
@@ -26,7 +26,7 @@ export function Lead({ pair }: { pair: Comparison }): JSX.Element {
 
 // What is done otherwise, in a sentence for each value; what is said here is not in the table below.
 function PlanDiffers({ pair }: { pair: Comparison }): JSX.Element | null {
-  const { other } = pair, ones = saidOf(pair), left = ofPlan(pair).length - ones.length;
+  const { other, plan_summary: ones, plan_more: left } = pair;
   if (!ones.length) return null;
   const text = ({ name, first, other: its, unit }: Difference): string =>
     first === NOTHING ? t("{what} is only in run {run}", { what: name, run: other.id }) : its === NOTHING ? t("{what} is not in run {run}", { what: name, run: other.id })
@@ -45,7 +45,7 @@ function PlanDiffers({ pair }: { pair: Comparison }): JSX.Element | null {
 export function Differences({ pairs }: { pairs: Comparison[] }): JSX.Element {
   const first = pairs[0]?.first.id ?? 0;
   const rows = new Map<string, { kind: string; name: string; first: string; others: Map<number, string> }>();
-  const listed = new Set(pairs.flatMap((pair) => tabledOf(pair).map(keyOf))), isSaid = pairs.some((pair) => saidOf(pair).length > 0);
+  const listed = new Set(pairs.flatMap((pair) => tabledOf(pair).map(keyOf))), isSaid = pairs.some((pair) => pair.plan_summary.length > 0);
   for (const pair of pairs) {
     for (const one of pair.differences) {
       const key = keyOf(one);
