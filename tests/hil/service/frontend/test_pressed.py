@@ -42,4 +42,41 @@ def test_a_stop_that_nobody_takes_is_not_delivered(page: playwright.Page, there:
     stop = page.locator("button.stop")
     stop.click()
     expect(stop).to_contain_text("NOT delivered")
-    expect(page.get_by_role("alert").filter(has_text="NOT delivered")).to_be_visible()
+    notice = page.get_by_role("alert").filter(has_text="NOT delivered")
+    expect(notice).to_contain_text(re.compile("does not answer. It is tried again until .* Use the stop at"))
+
+
+def test_a_stop_that_nobody_has_taken_in_half_a_minute_is_not_tried_any_longer(
+    page: playwright.Page, there: Served
+) -> None:
+    page.clock.install()
+    to(page, there, "benches/sim")
+    page.route("**/emergency-stop", lambda _: None)
+    page.locator("button.stop").click()
+    notice = page.get_by_role("alert").filter(has_text="NOT delivered")
+    page.clock.run_for(1100)
+    expect(notice).to_contain_text("It is tried again until")
+    page.clock.run_for(31_000)
+    expect(notice).to_contain_text(
+        re.compile("did not answer. It has not been tried since .* Use the stop at")
+    )
+    notice.get_by_role("button", name="Hide this message").click()
+    expect(notice).to_have_count(0)
+    page.unroute("**/emergency-stop")
+    with page.expect_response("**/emergency-stop"):
+        page.locator("button.stop").click()  # and the next one is taken
+    page.clock.run_for(1100)
+    expect(notice).to_have_count(0)
+    assert there.get("/benches/sim")["state"] == "emergency_stop"
+
+
+@pytest.mark.parametrize("refusals", [("403 (Forbidden)", "401 (Unauthorized)")])
+def test_a_stop_that_the_service_refuses_says_so_and_why(page: playwright.Page, there: Served) -> None:
+    to(page, there, "benches/sim")
+    why = {"what": "the request comes from another site's page", "where": "", "fix": ""}
+    page.route("**/emergency-stop", lambda route: route.fulfill(status=403, json=why))
+    page.locator("button.stop").click()
+    notice = page.get_by_role("alert").filter(has_text="NOT delivered")
+    expect(notice).to_contain_text("the service refused it at")
+    expect(notice).to_contain_text("the request comes from another site's page")
+    expect(page.get_by_role("alert")).to_have_count(1)

@@ -91,8 +91,9 @@ export const getText = async (path: string, signal?: AbortSignal): Promise<strin
 export const getTagged = (path: string, signal?: AbortSignal): Promise<Answered> => fetched("GET", path, undefined, signal);
 export const fileUrl = (run: number, name: string): string => `${API}/runs/${run}/files/${encodeURIComponent(name)}`;
 
-const STOP_MS = 30_000;
+export const STOP_MS = 30_000; // how long a stop is tried
 const AGAIN_MS = 50;
+const AWAY = [502, 503, 504]; // a proxy's, while the service behind it is away
 let stopUrl = "";
 
 // Where the service takes emergency stops whatever else it does: asked beforehand, for a flooded service answers late.
@@ -101,31 +102,34 @@ export async function findStopPost(): Promise<void> {
 }
 
 // Both ways at the same moment; the first that has taken it is enough. A flooded service closes connections: a way
-// on which no one answers is tried again.
+// on which no one answers is tried again. Throws the refusal, or null where no one has answered.
 export async function stopNow(bench: string): Promise<void> {
   const path = bench ? `/benches/${encodeURIComponent(bench)}/emergency-stop` : "/emergency-stop";
-  const ways = [insist(() => ask("POST", path))];
-  if (stopUrl) ways.push(insist(() => byStopPost(path)));
+  const control = new AbortController(), late = control.signal; // also for a way that is never answered
+  const timer = setTimeout(() => control.abort(), STOP_MS);
+  const ways = [insist(() => ask("POST", path, undefined, late), late)];
+  if (stopUrl) ways.push(insist(() => byStopPost(path, late), late));
   try {
     await Promise.any(ways);
   } catch (error) {
-    throw error instanceof AggregateError ? error.errors[0] : error;
+    throw (error as AggregateError).errors.find((one) => one instanceof Refused && one.status) ?? null;
+  } finally {
+    clearTimeout(timer);
   }
 }
 
-async function byStopPost(path: string): Promise<void> {
-  const answer = await fetch(`${stopUrl}${API}${path}`, { method: "POST", credentials: "include" });
-  if (!answer.ok) throw new Refused(answer.status, { what: t("status {status}", { status: answer.status }), where: "", fix: "" });
+async function byStopPost(path: string, signal: AbortSignal): Promise<void> {
+  const answer = await fetch(`${stopUrl}${API}${path}`, { method: "POST", credentials: "include", signal });
+  if (!answer.ok) throw new Refused(answer.status, problemOf(answer.status, await answer.text()));
 }
 
-async function insist(way: () => Promise<unknown>): Promise<void> {
-  const untilMs = Date.now() + STOP_MS;
+async function insist(way: () => Promise<unknown>, late: AbortSignal): Promise<void> {
   for (;;) {
     try {
       await way();
       return;
     } catch (error) {
-      if ((error instanceof Refused && error.status) || Date.now() > untilMs) throw error;
+      if ((error instanceof Refused && error.status && !AWAY.includes(error.status)) || late.aborted) throw error;
       await new Promise((resolve) => setTimeout(resolve, AGAIN_MS));
     }
   }

@@ -2,8 +2,9 @@
 
 import type { JSX } from "preact";
 import { useLayoutEffect, useState } from "preact/hooks";
-import { stopNow } from "../api/client.ts";
-import { attempt } from "../data.ts";
+import { Refused, STOP_MS, stopNow } from "../api/client.ts";
+import { clockTime } from "../format.ts";
+import { English } from "../i18n/english.tsx";
 import { t } from "../i18n/text.ts";
 import { Store, useStore } from "../store.ts";
 
@@ -20,20 +21,37 @@ export function useStopOf(bench: string, known: boolean | null): void {
 
 export const stopScope = (bench: string): string => (bench ? t("{bench} only", { bench }) : t("all benches"));
 
-// Whether a stop that was asked for has been taken by nobody for so long that a person must know.
+// A stop that was asked for and that the service has not taken for so long that a person must know: it is still being
+// tried, it was refused, or it was given up.
+interface Untaken {
+  state: "tried" | "refused" | "given up";
+  untilMs: number; // when it ends to be tried, or has ended
+  refused: Refused | null;
+}
+
 const LATE_MS = 1000;
-export const stopUntaken = new Store(false);
+const untakenStop = new Store<Untaken | null>(null);
+
+let pressed = 0; // an earlier stop that ends late says nothing of the newest
 
 export async function pressStop(bench: string): Promise<boolean> {
-  const late = setTimeout(() => { stopUntaken.value = true; }, LATE_MS);
-  const taken = await attempt(() => stopNow(bench).then(() => true));
-  clearTimeout(late);
-  stopUntaken.value = !taken;
-  return taken === true;
+  const mine = ++pressed, untilMs = Date.now() + STOP_MS;
+  const put = (untaken: Untaken | null) => { if (mine === pressed) untakenStop.value = untaken; };
+  const late = setTimeout(() => put({ state: "tried", untilMs, refused: null }), LATE_MS);
+  try {
+    await stopNow(bench);
+    put(null);
+    return true;
+  } catch (error) {
+    put(error instanceof Refused ? { state: "refused", untilMs: Date.now(), refused: error } : { state: "given up", untilMs: Date.now(), refused: null });
+    return false;
+  } finally {
+    clearTimeout(late);
+  }
 }
 
 export function StopButton(): JSX.Element {
-  const bench = useStore(benchInSight), untaken = useStore(stopUntaken);
+  const bench = useStore(benchInSight), untaken = useStore(untakenStop);
   const [state, setState] = useState<"" | "sending" | "taken">("");
   const stop = async () => {
     setState("sending");
@@ -49,6 +67,20 @@ export function StopButton(): JSX.Element {
 }
 
 export function UntakenStop(): JSX.Element | null {
-  const untaken = useStore(stopUntaken);
-  return untaken ? <p class="alarm" role="alert">{t("The emergency stop is NOT delivered: the service does not answer. It is tried again for half a minute. Use the stop at the bench.")}</p> : null;
+  const untaken = useStore(untakenStop);
+  if (!untaken) return null;
+  return (
+    <div class="alarm" role="alert">
+      <p>{wordsOf(untaken)} {t("Use the stop at the bench.")}</p>
+      {untaken.refused ? <p><English>{untaken.refused.message}</English>{untaken.refused.fix ? <>{"; "}<English>{untaken.refused.fix}</English></> : null}</p> : null}
+      {untaken.state === "tried" ? null : <button type="button" onClick={() => { untakenStop.value = null; }}>{t("Hide this message")}</button>}
+    </div>
+  );
+}
+
+function wordsOf({ state, untilMs }: Untaken): string {
+  const time = clockTime(untilMs);
+  if (state === "refused") return t("The emergency stop was NOT delivered: the service refused it at {time}.", { time });
+  if (state === "given up") return t("The emergency stop was NOT delivered: the service did not answer. It has not been tried since {time}.", { time });
+  return t("The emergency stop is NOT delivered: the service does not answer. It is tried again until {time}.", { time });
 }
