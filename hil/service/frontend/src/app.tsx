@@ -9,7 +9,7 @@ import { English } from "./i18n/english.tsx";
 import { t } from "./i18n/text.ts";
 import { usePlace, useTitle } from "./router.ts";
 import { session } from "./session.ts";
-import { Menu } from "./shell/menu.tsx";
+import { Aside, Menu } from "./shell/menu.tsx";
 import { Palette, paletteOpen } from "./shell/palette.tsx";
 import { SignIn, signOut } from "./shell/sign-in.tsx";
 import { benchInSight, StopButton, UntakenStop } from "./shell/stop.tsx";
@@ -42,6 +42,7 @@ export function App(): JSX.Element {
         <div class="bar">
           <a class="home" href={to.list("benches")}>{t("Bench service")}</a>
           {who.state === "in" ? <button type="button" class="find" onClick={() => { paletteOpen.value = true; }}>{t("Find")} <kbd>Ctrl K</kbd></button> : null}
+          {who.state === "in" ? <Aside place={place} /> : null}
           {who.state === "in" && who.me.tokens ? <span class="who">{`${who.me.name}, ${kindInWords(who.me.role)}`} <button type="button" class="plain" onClick={() => void signOut()}>{t("Sign out")}</button></span> : null}
           <StopButton />
         </div>

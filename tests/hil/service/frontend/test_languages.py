@@ -75,6 +75,23 @@ def test_the_browsers_language_is_taken_and_another_is_chosen_in_the_settings(
     expect(heading(page, "Einstellungen")).to_be_visible()
 
 
+@pytest.mark.parametrize(
+    ("locale", "name"), [("en", "Bench sim Free"), ("de", "Prüfstand sim Frei"), ("ja", "sim")]
+)
+def test_the_menu_is_one_line_beside_a_scroll_bar_and_a_bench_is_named(
+    page: playwright.Page, there: Served, name: str
+) -> None:
+    page.set_viewport_size({"width": 1280 - 15, "height": 900})
+    to(page, there, "benches/sim")
+    expect(heading(page, name)).to_be_visible()
+    assert "sim" in page.title()
+    shown = "[...element.querySelectorAll('a')].filter((one) => one.offsetParent)"
+    lines = f"element => new Set({shown}.map((one) => one.offsetTop)).size"
+    for menu in page.get_by_role("navigation").all():
+        assert menu.evaluate(lines) == 1
+    assert page.locator("header a").filter(visible=True).count() == 16  # the lists, what is aside, the home
+
+
 def test_readers_of_english_load_no_catalogue(page: playwright.Page, there: Served) -> None:
     loaded: list[str] = []
     page.on("request", lambda request: loaded.append(request.url))

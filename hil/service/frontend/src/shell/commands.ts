@@ -11,13 +11,14 @@ import { signOut } from "./sign-in.tsx";
 export const MENU = [
   ["benches", t("Benches"), "Benches"], ["runs", t("Runs"), "Runs"], ["compare", t("Compare"), "Compare"], ["trends", t("Trends"), "Trends"], ["plans", t("Plans"), "Plans"], ["models", t("Models"), "Models"],
   ["controllers", t("Controllers"), "Controllers"], ["design", t("Design"), "Design"], ["recordings", t("Recordings"), "Recordings"], ["identifications", t("Identify"), "Identify"], ["diagnoses", t("Diagnose"), "Diagnose"], ["tunings", t("Tune"), "Tune"], ["campaigns", t("Campaigns"), "Campaigns"],
-  ["audit", t("Audit"), "Audit"], ["settings", t("Settings"), "Settings"],
 ] as const;
+// In the bar above it, where there is room; in the menu where that is folded.
+export const ASIDE = [["audit", t("Audit"), "Audit"], ["settings", t("Settings"), "Settings"]] as const;
 const MORE = [["bench-files", t("Bench files"), "Bench files"], ["glossary", t("Words of this page"), "Words of this page glossary help"]] as const; // beside the menu, which is full
 
 // `bench`: of the emergency stop, '' for all. Whoever cannot read the page's language finds their own here by its name.
 export const commands = (bench: string): Entry[] => [
-  ...[...MENU, ...MORE].map(([view, name, also]) => ({ kind: t("page"), name, about: "", path: to.list(view), also: `page ${also}` })),
+  ...[...MENU, ...ASIDE, ...MORE].map(([view, name, also]) => ({ kind: t("page"), name, about: "", path: to.list(view), also: `page ${also}` })),
   { kind: t("page"), name: t("For the wall of a control room"), about: "", path: to.wall(), also: "page wall" },
   ...THEMES.map((theme) => ({ kind: t("command"), name: t("Colours: {theme}", { theme: THEME_NAMES[theme] }), about: t("light or dark"), act: () => chooseTheme(theme), also: `command Colours: ${theme}` })),
   ...Object.entries(LANGUAGES).map(([tag, name]) => ({ kind: t("command"), name: t("Language: {language}", { language: name }), about: "", act: () => chooseLanguage(tag as Language), also: `command Language: ${tag}` })),

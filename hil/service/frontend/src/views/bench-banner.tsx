@@ -22,7 +22,7 @@ export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 
   return (
     <section class={`banner ${isReserved(bench) ? "in_use" : bench.state}`} aria-label={t("State of {bench}", { bench: bench.name })}>
       <p class="kind">{aboutBench(bench, bench.title || bench.name)}</p>
-      <Title class="headline" aria-live="polite">{headlineOf(bench, running ? titleOf(running) : null, isEnding(running), held)}</Title>
+      <Title class="headline" aria-live="polite">{level === 1 ? <><small>{t("Bench {bench}", { bench: bench.name })}</small>{" "}</> : null}{headlineOf(bench, running ? titleOf(running) : null, isEnding(running), held)}</Title>
       {running ? <p>{tx("<a>Run {run}</a>, by {person}: {doing}", { a: linkTo(to.run(running.id)), run: running.id, person: running.requested_by, doing: <English>{running.doing}</English> })}</p> : null}
       {held && !running?.prompt ? <p>{nextOf(state)}</p> : null}
       {bench.why && !(running && bench.state === "running") ? <p><English>{bench.why}</English></p> : null}

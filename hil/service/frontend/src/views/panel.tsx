@@ -41,7 +41,7 @@ function State({ state }: { state: BenchState }): JSX.Element {
   return (
     <section class={`banner ${lookOf(bench, running)}`} aria-label={t("State of {bench}", { bench: bench.name })}>
       <p class="kind">{aboutBench(bench, bench.title || bench.name)}</p>
-      <h1 class="headline word" aria-live="assertive">{wordOf(bench, running)}</h1>
+      <h1 class="headline word" aria-live="assertive"><small>{bench.name}</small> {wordOf(bench, running)}</h1>
       {running ? <Running state={state} /> : null}
       {bench.why && !running ? <p class="big"><English>{bench.why}</English></p> : null}
       <p class="big">{nextOf(state)}</p>
