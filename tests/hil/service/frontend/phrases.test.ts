@@ -4,11 +4,11 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { moment } from "../../../../hil/service/frontend/src/format.ts";
 import { withLocalMoments } from "../../../../hil/service/frontend/src/i18n/local-moments.ts";
-import { translated } from "../../../../hil/service/frontend/src/i18n/phrases.ts";
+import { pausedInWords, translated } from "../../../../hil/service/frontend/src/i18n/phrases.ts";
 
 const KNOWN = [
   "drives enabled", "RMCU and dynos answer", "phase (phase stabilization) written, read back", "notch 2 (gain stabilization) written, read back", "dynos hold 20.0 km/h", "dynos simulate the vehicle",
-  "gain_0kmh begins", "gain_0kmh ends", "gain_0kmh was stopped", "confirmed by RMCU and dynos", "held, torque off, the dynos hold their speed: oil is hot", "resumes after 1.5 s: well again",
+  "gain_0kmh begins", "gain_0kmh ends", "gain_0kmh was stopped", "confirmed by RMCU and dynos", "resumes after 1.5 s: well again",
   "the bench loop was delayed by 0.2 s", "executed: ramp_down; the wheels turn at 0.08 rad/s, the RMCU is in 'off'", "cancelled by anna", "stopped by the operator", "beginning",
   "the service ended during the run; data measured before that is kept", "the agent ended before the recording started; the run can be queued again", "no answer to 'Is the cage shut?' within 600 s",
   "run 3 of an earlier service process is being ended", "the axle runs down", "a second person approves it", "another user holds the bench", "wait until it is released", "choose another time", "run 3 is finished", "run 4 is no longer queued",
@@ -16,6 +16,31 @@ const KNOWN = [
 ];
 
 for (const text of KNOWN) test(`known: ${text}`, () => assert.equal(translated(text), text));
+
+// Of limits, devices and the way to safety: what a person must not read in a foreign language.
+const OF_SAFETY = [
+  "lower the plan's torque or speed; the limit is in the bench file", "see the recording's events; the bench file has the limits and interlocks", "bench limits: the limit is in the bench file", "warning: oil is hot",
+  "RMCU status has stopped coming (the RMCU sends no status)", "is the device powered?", "the RMCU went to fault: 0x21", "rear left: heartbeat lost; rear right: drive in fault", "check RMCU",
+  "safe state: RMCU did not confirm its safe state within 2 s; dynos did not confirm its safe state within 2 s: no answer", "cut the drives' power before you approach the bench",
+  "the process that holds the bench: hung: it sent nothing for 3 s; safe: not confirmed (RMCU does not confirm that its torque is off)", "its process ended with code 3",
+  "stopped before it began: emergency stop since 2026-11-28T12:37:18+00:00, by anna", "it could NOT be latched, so nothing prevents arming the bench again: no space",
+  "torque at zero: the segment ends 1 s after the step, the window needs 2 s", "purpose", "vehicle inertia, half width, relative",
+];
+
+for (const text of OF_SAFETY) test(`known of safety: ${text}`, () => assert.equal(translated(text), text));
+
+test("channels of limits are in words, and of a stop the way to reset it here", () => {
+  assert.equal(translated("limit tripped: motor_speed_rad_s reached 712 rad/s, the limit is 700 rad/s"), "limit tripped: motor speed reached 712 rad/s, the limit is 700 rad/s");
+  assert.equal(translated("oil: oil_c reached 91 °C, the limit is 90 °C; response: hold"), "oil: oil c reached 91 °C, the limit is 90 °C; response: pause");
+  assert.equal(translated("make sure that no one is in danger, remove the cause; then: reset it at its service, or: hil bench reset sim --by NAME"), "make sure that no one is in danger and remove the cause; then reset it here, or with hil bench reset sim --by NAME");
+});
+
+test("what the engine holds is paused, to readers of English too", () => {
+  assert.equal(translated("held, torque off, the dynos hold their speed: paused by the operator"), "paused, torque off, the dynos hold their speed: paused by the operator");
+  assert.equal(pausedInWords("being ended: held: oil is hot"), "being ended: paused: oil is hot");
+  assert.equal(pausedInWords("oil is hot: held for 600 s"), "oil is hot: paused for 600 s");
+  assert.equal(pausedInWords("the speed is held"), "the speed is held");
+});
 
 test("of an emergency stop it stays when and by whom", () => {
   assert.equal(translated("emergency stop since 2026-11-28T12:37:18+00:00, by anna at 10.0.0.7: requested by anna at 10.0.0.7 at the bench service"), "emergency stop since 2026-11-28T12:37:18+00:00, by anna at 10.0.0.7");

@@ -126,6 +126,14 @@ def test_words_of_the_service_are_translated_where_known_and_read_out_as_english
 
 
 @IN_GERMAN
+def test_the_form_of_a_campaign_is_whole_in_german(page: playwright.Page, there: Served) -> None:
+    to(page, there, "campaigns")
+    expect(heading(page, "Kampagnen")).to_be_visible()
+    expect(page.locator("main").get_by_text("Zweck")).to_be_attached()
+    assert page.locator("main [lang=en]").all_inner_texts() == []
+
+
+@IN_GERMAN
 def test_commands_are_found_by_their_names_in_either_language(page: playwright.Page, there: Served) -> None:
     to(page, there, "benches")
     expect(heading(page, "Prüfstände")).to_be_visible()

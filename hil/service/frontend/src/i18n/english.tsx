@@ -3,12 +3,12 @@
 import type { ComponentChildren, JSX } from "preact";
 import { LANGUAGE } from "./language.ts";
 import { withLocalMoments } from "./local-moments.ts";
-import { translated } from "./phrases.ts";
+import { pausedInWords, translated } from "./phrases.ts";
 
 export function English({ children }: { children: ComponentChildren }): JSX.Element {
   const said = typeof children === "string" ? children : null;
   const shown = said === null ? children : withLocalMoments(said);
-  if (LANGUAGE === "en") return <>{shown}</>;
+  if (LANGUAGE === "en") return <>{typeof shown === "string" ? pausedInWords(shown) : shown}</>;
   const known = said === null ? null : translated(said);
   return known === null ? <span lang="en">{shown}</span> : <>{withLocalMoments(known)}</>;
 }

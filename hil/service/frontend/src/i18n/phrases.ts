@@ -3,7 +3,9 @@
 import { wordsOf } from "../format.ts";
 import { FIELD_REFUSALS } from "./field-refusals.ts";
 import { FILE_REFUSALS } from "./file-refusals.ts";
+import { FORM_WORDS } from "./form-words.ts";
 import { HOLDS, REFUSALS } from "./refusal-phrases.ts";
+import { pausePhrases, runPhrases } from "./run-phrases.ts";
 import { wordsOf as wordsOfFirst, type Phrase, type Said } from "./said.ts";
 import { t } from "./text.ts";
 
@@ -22,9 +24,6 @@ const PHRASES: Phrase[] = [
   [/^(?<segment>\S+) ends$/, (of) => t("{segment} ends", of)],
   [/^(?<segment>\S+) was stopped$/, (of) => t("{segment} was stopped", of)],
   [/^confirmed by (?<names>.+)$/, (of) => t("confirmed by {names}", { names: named(of["names"]) })],
-  [/^held, torque off, the dynos hold their speed: (?<cause>.+)$/s, (of) => t("held, torque off, the dynos hold their speed: {cause}", of)],
-  [/^held: (?<cause>.+)$/s, ({ cause = "" }) => t("held: {cause}", { cause: cause === "paused by the operator" ? t("paused by the operator") : cause })],
-  [/^resumes after (?<seconds>\S+) s: (?<by>.+)$/, (of) => t("resumes after {seconds} s: {by}", of)],
   [/^the bench loop was delayed by (?<seconds>\S+) s$/, (of) => t("the bench loop was delayed by {seconds} s", of)],
   [/^executed: (?<steps>[^;]+); the wheels turn at (?<speed>\S+) rad\/s, the RMCU is in '(?<state>[^']+)'$/, (of) => t("executed: {steps}; the wheels turn at {speed} rad/s, the RMCU is in '{state}'", of)],
   [/^the axle runs down$/, () => t("the axle runs down")],
@@ -47,8 +46,10 @@ const PHRASES: Phrase[] = [
   [/^stays in service: (?<holds>.+)$/s, ({ holds = "" }) => t("stays in service: {holds}", { holds: holds.split("; ").map((one) => wordsOfFirst(HOLDS, one) ?? one).join("; ") })],
   [/^(?<count>\d+) fields are wrong\n(?<lines>.+)$/s, ({ count = "", lines = "" }) => t("{count} fields are wrong", { count }) + lines.split("\n").map((line) => `\n  ${ofField(line.trim())}`).join("")],
   ...FIELD_REFUSALS,
+  ...runPhrases((text) => translated(text) ?? text),
   ...REFUSALS,
   ...FILE_REFUSALS,
+  ...FORM_WORDS,
   [/^emergency stop since (?<since>[^,]+), by (?<person>.+?): requested by .+$/, (of) => t("emergency stop since {since}, by {person}", of)],
 ];
 
@@ -64,5 +65,16 @@ export function translated(text: string): string | null {
   const known = wordsOfFirst(PHRASES, text);
   if (known !== null) return known;
   const [, where = "", what = ""] = /^([^:\n]{1,100}): (.+)$/s.exec(text) ?? [], words = what ? wordsOfFirst(PHRASES, what) : null;
-  return words === null ? null : `${wordsOfFirst(PHRASES, where) ?? where}: ${words}`;
+  return words === null ? ofAll(text) : `${wordsOfFirst(PHRASES, where) ?? where}: ${words}`;
+}
+
+const PAUSES = pausePhrases((text) => pausedInWords(text));
+
+// For readers of English, too: what the engine calls held is paused here.
+export const pausedInWords = (text: string): string => wordsOfFirst(PAUSES, text) ?? text;
+
+// Several sentences in one, if each of them is known.
+function ofAll(text: string): string | null {
+  const parts = text.split("; ").map((one) => (one === text ? null : translated(one)));
+  return parts.includes(null) ? null : parts.join("; ");
 }

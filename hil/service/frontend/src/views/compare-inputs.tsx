@@ -5,6 +5,7 @@ import type { Comparison } from "../api/types.ts";
 import { joined } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { t, tn } from "../i18n/text.ts";
+import { kindInWords } from "../ui/kinds.ts";
 import { Scroll, Section } from "../ui/parts.tsx";
 import { changeOf, keyOf, tabledOf, type Change, type Difference } from "./compare-changes.ts";
 
@@ -61,7 +62,7 @@ export function Differences({ pairs }: { pairs: Comparison[] }): JSX.Element {
         <Scroll label={t("Different inputs")}>
           <table>
             <thead><tr><th scope="col">{t("kind")}</th><th scope="col">{t("value")}</th><th scope="col" class="number">{t("run {run}", { run: first })}</th>{pairs.map((pair) => <th key={pair.other.id} scope="col" class="number">{t("run {run}", { run: pair.other.id })}</th>)}</tr></thead>
-            <tbody>{[...rows].map(([key, row]) => <tr key={key}><th scope="row"><English>{row.kind}</English></th><td>{row.name}</td><td class="number">{row.first}</td>{pairs.map((pair) => <td key={pair.other.id} class="number">{row.others.get(pair.other.id) ?? t("the same")}</td>)}</tr>)}</tbody>
+            <tbody>{[...rows].map(([key, row]) => <tr key={key}><th scope="row">{kindInWords(row.kind)}</th><td>{row.name}</td><td class="number">{row.first}</td>{pairs.map((pair) => <td key={pair.other.id} class="number">{row.others.get(pair.other.id) ?? t("the same")}</td>)}</tr>)}</tbody>
           </table>
         </Scroll>
       )}
