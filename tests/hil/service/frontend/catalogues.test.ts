@@ -57,6 +57,19 @@ test("a mistake in a catalogue is named with its place", () => {
   assert.match(mistakesOf("de", { ...key, plural: true }, { other: "{count} Läufe" })[0] ?? "", /forms one, other/);
 });
 
+// docs/reference/glossary.md: of two words for one thing, the one that left.
+const LEFT: Record<string, RegExp> = { de: /[Aa]ngehalten(?!.*SIGSTOP)/, ja: /プラン|保留|セグメント|オペレーター|実行 \{run\}/ };
+
+for (const [language, left] of Object.entries(LEFT)) {
+  test(`${language} has one word for one thing`, () => assert.deepEqual(Object.values(catalogueOf(language)).flatMap(textsOf).filter((text) => left.test(text)), []));
+}
+
+test("an error and a device's fault have a word each in German, whatever they are an error of", () => {
+  const known = catalogueOf("de");
+  assert.deepEqual(["error", "failure"].map((text) => known[text]), ["Fehler", "Fehler"]);
+  for (const [text, words] of Object.entries(known)) for (const one of textsOf(words)) if (/Störung/.test(one)) assert.match(text, /fault/);
+});
+
 test("the language is the one chosen, else the first of the browser's that there is, else English", () => {
   assert.deepEqual([languageOf("ja", ["de-AT"]), languageOf(null, ["fr-CH", "de-CH", "en"]), languageOf("", ["fr"]), languageOf("xx", ["ja-JP"])], ["ja", "de", "en", "ja"]);
   assert.deepEqual([localeOf("de", ["en-US", "de-CH"]), localeOf("ja", ["en-US"])], ["de-CH", "ja"]);

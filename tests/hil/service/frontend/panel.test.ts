@@ -15,7 +15,7 @@ test("a bench is said in one word", () => {
   const words = (state: BenchState) => wordOf(state.bench, state.running);
   assert.deepEqual(
     [stateOf("free"), stateOf("running", RUN), stateOf("running", { ...RUN, doing: "held: oil" }), stateOf("running", { ...RUN, prompt: QUESTION }), stateOf("emergency_stop", RUN)].map(words),
-    ["Free", "Running", "Held", "Question", "Emergency stop"],
+    ["Free", "Running", "Paused", "Question", "Emergency stop"],
   );
 });
 

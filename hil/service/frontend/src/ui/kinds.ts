@@ -8,7 +8,7 @@ const KINDS: Record<string, string> = {
   viewer: t("viewer"), operator: t("operator"), engineer: t("engineer"), admin: t("admin"), agent: t("agent"),
   arriving: t("arriving"), checking: t("checking"), ready: t("ready"), refused: t("refused"),
   bench: t("bench"), plan: t("plan"), model: t("model"), controller: t("controller"), diagnosis: t("diagnosis"), identification: t("identification"), transfer_function: t("transfer function"), physical: t("physical"),
-  tuning: t("tuning"), autotuning: t("autotuning"), linear: t("linear"), doubtful: t("doubtful"), stable: t("stable"), unstable: t("unstable"), segment: t("segment"), event: t("event"), hold: t("hold"),
+  tuning: t("tuning"), autotuning: t("autotuning"), linear: t("linear"), doubtful: t("doubtful"), stable: t("stable"), unstable: t("unstable"), segment: t("segment"), event: t("event"), hold: t("pause"),
   run: t("run"), note: t("note"), tag: t("tag"), recording: t("recording"), study: t("study"), campaign: t("campaign"), file: t("file"), version: t("version"), reservation: t("reservation"), person: t("person"), "valid token": t("valid token"),
   "given plan": t("given plan"), "given model": t("given model"), "given controller": t("given controller"), "given bench file": t("given bench file"), "bench of this service": t("bench of this service"), "bench of a bench file": t("bench of a bench file"), "bench of an agent": t("bench of an agent"),
   free: t("free"), ending: t("ending"), in_use: t("in use"), emergency_stop: t("emergency stop"), away: t("away"), open: t("open"), named: t("named"), unknown: t("unknown"), none: t("none"), picture: t("picture"), phase: t("phase"), gain: t("gain"),
@@ -17,7 +17,7 @@ const KINDS: Record<string, string> = {
 // Kinds of events in recordings; a device's own are shown by their names.
 const EVENTS: Record<string, string> = {
   preflight: t("pre-flight check"), arm: t("drives enabled"), controller: t("controller"), speed: t("speed"), slip: t("slip"), vehicle: t("vehicle"), prompt: t("question"), segment: t("segment"), analysis: t("analysis"),
-  hold: t("hold"), held: t("hold"), limit: t("limit reached"), pause: t("delay of the loop"), late: t("late samples"), missing: t("missing"), bus: t("bus"), replay: t("replay"),
+  hold: t("pause"), held: t("pause"), limit: t("limit reached"), pause: t("delay of the loop"), late: t("late samples"), missing: t("missing"), bus: t("bus"), replay: t("replay"),
   emergency_stop: t("emergency stop"), failure: t("failure"), interrupt: t("ended early"), traceback: t("program fault"), end_steps: t("end steps"), safe_state: t("safe state"), run_down: t("run-down"),
 };
 

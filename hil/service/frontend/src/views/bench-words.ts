@@ -43,7 +43,7 @@ export function headlineOf(bench: Bench, title: string | null, ending = false, h
 // To be read from afar.
 export function wordOf(bench: Bench, run: Run | null): string {
   if (bench.state !== "running" || bench.stop_confirmed === false) return headlineOf(bench, null);
-  return isEnding(run) ? t("Being ended") : run?.prompt ? t("Question") : isHeld(run) ? t("Held") : STATES.running;
+  return isEnding(run) ? t("Being ended") : run?.prompt ? t("Question") : isHeld(run) ? t("Paused") : STATES.running;
 }
 
 // The largest word on the wall of a control room: one, and short.
@@ -52,7 +52,7 @@ const WALL: Record<Bench["state"], string> = { free: t("Free"), running: t("Runn
 export function wallWordOf(bench: Bench, run: Run | null): string {
   if (bench.stop_confirmed === false) return WALL.emergency_stop;
   if (isReserved(bench)) return t("Reserved");
-  return bench.state !== "running" ? WALL[bench.state] : isEnding(run) ? WALL.ending : run?.prompt ? t("Question") : isHeld(run) ? t("Held") : WALL.running;
+  return bench.state !== "running" ? WALL[bench.state] : isEnding(run) ? WALL.ending : run?.prompt ? t("Question") : isHeld(run) ? t("Paused") : WALL.running;
 }
 
 // The first that may start as it is; one that waits for somebody where none may.
@@ -73,7 +73,7 @@ export function nextOf({ bench, running, queue }: BenchState): string {
   if (bench.state === "emergency_stop") return running ? t("The run is being ended.") : t("When it is safe, an engineer resets the emergency stop.");
   if (isEnding(running)) return t("The run is being ended.");
   if (running?.prompt) return t("The run goes on when the question is answered.");
-  if (running && isHeld(running)) return t("The run is held and the torque is off. It goes on when the cause is gone, or with Resume.");
+  if (running && isHeld(running)) return t("The run is paused and the torque is off. It goes on when the cause is gone, or with Resume.");
   if (!first) return t("Nothing waits.");
   const values = { plan: titleOf(first), person: first.requested_by, count: more };
   if (first.state === "waiting_approval") return t("Next, when an engineer approves it: {plan}, by {person}", values);

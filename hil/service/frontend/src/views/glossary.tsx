@@ -17,7 +17,7 @@ const WORDS: [string, string][] = [
   [t("Undecided"), t("two values nearer to each other than their own scatter; it fails the run")],
   [t("Safe state"), t("torque off and drives disabled, as the devices themselves confirm it")],
   [t("Emergency stop"), t("makes a bench safe at once and stays latched until an engineer resets it; it does not replace the hardwired one")],
-  [t("A hold"), t("a run stands still with the torque off until its cause is gone or an operator lets it go on")],
+  [t("Paused"), t("a run stands still with the torque off until its cause is gone or an operator lets it go on")],
   [t("Reservation"), t("a bench belongs to one person from a moment to another; runs of others wait meanwhile")],
   [t("Agent"), t("drives the benches of another machine for this service")],
   [t("Forecast"), t("a plan computed on the bench's model: its duration, peaks and criteria, without moving anything")],
