@@ -9,7 +9,7 @@ import pytest
 from playwright import sync_api as playwright
 
 from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
-from tests.hil.service.looks import refuse_hard_to_use
+from tests.hil.service.looks import expect_drawn, refuse_hard_to_use
 from tests.hil.service.served import SHORT, Served, served
 
 pytestmark = IN_A_BROWSER
@@ -57,6 +57,22 @@ def test_a_run_of_a_copy_is_compared_with_the_best_run_in_one_click(
     expect(region(page, "Criteria").locator("table")).to_contain_text("Peak of the shaft torque")
     expect(page.locator("figure.plot")).to_have_count(3)
     refuse_hard_to_use(page)
+
+
+def test_the_limit_that_a_run_fails_is_drawn_beside_the_best_run(
+    page: playwright.Page, there: Served
+) -> None:
+    there.give("limited", SHORT.replace("name: short", "name: limited").replace("upper: 400", "upper: 130"))
+    best = there.queue("limited", values={"torque_nm": 50})
+    failed = there.queue("limited", values={"torque_nm": 150})
+    assert [there.over(run)["verdict"] for run in (best, failed)] == ["pass", "fail"]
+    to(page, there, f"runs/{failed}")
+    page.get_by_role("link", name=f"Compare with the best run ({best}: torque_nm = 50").click()
+    plots = page.locator("figure.plot")
+    torque, speed = plots.filter(has_text="shaft torque"), plots.filter(has_text="motor speed")
+    expect(torque).to_contain_text("limit 130")
+    expect_drawn(torque, "gain", "phase", "limit")
+    expect(speed).not_to_contain_text("limit")
 
 
 @pytest.mark.parametrize("refusals", [("404 (Not Found)",)])

@@ -41,7 +41,7 @@ def test_a_run_that_waits_says_why_and_has_the_action_that_ends_it(
     expect(why).to_contain_text(f"Run {asking} (asking, by local) is on the bench and waits for an answer.")
     expect(why.get_by_role("link", name=f"Run {asking}")).to_be_visible()
     page.get_by_role("button", name="Emergency stop sim").click()
-    expect(why).to_contain_text("It waits for a latched emergency stop of sim.")
+    expect(why).to_contain_text("It waits because the emergency stop of sim is latched.")
     there.over(asking)
     refuse_hard_to_use(page)
     why.get_by_role("button", name=f"reset the emergency stop. Run {waiting} starts then.").click()

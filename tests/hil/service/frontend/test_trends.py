@@ -75,6 +75,18 @@ def test_a_drift_is_told_before_it_reaches_the_limit(page: playwright.Page, ther
     expect_drawn(trend, "phase")  # rings around the values
 
 
+@pytest.mark.parametrize("refusals", [("404 (Not Found)",)])
+def test_trends_open_with_the_plan_and_criterion_that_have_values(
+    page: playwright.Page, there: Served
+) -> None:
+    to(page, there, "trends")
+    expect(region(page, "Trend over runs of p")).to_contain_text("11 runs")
+    expect(choice(page, "Plan")).to_have_value("p")
+    expect(choice(page, "Criterion")).to_have_value("s.creep")
+    to(page, there, "trends?bench=none")
+    expect(page.get_by_role("alert")).to_contain_text("there is no bench 'none'")
+
+
 def test_a_trend_has_an_address_of_its_own(page: playwright.Page, there: Served) -> None:
     to(page, there, "trends?bench=sim&plan=p&dut=A&criterion=s.peak")
     trend = region(page, "Trend over runs of p")

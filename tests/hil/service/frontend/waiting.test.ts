@@ -13,7 +13,7 @@ const HELD = { id: 1, bench: "sim", who: "chen", begins: "2026-11-28T10:00:00Z",
 const CASES: [string, Run, Around, RegExp, RegExp][] = [
   ["approval", { ...RUN, state: "waiting_approval", hazard: "spins to 15,000 rpm" } as Run, around({}), /hazardous: spins to 15,000 rpm/, /other than ben/],
   ["missing", RUN, { bench: null, running: null, queue: [] }, /sim is not connected/, /in service again/],
-  ["stop", RUN, around({ state: "emergency_stop" }), /emergency stop of sim/, /an engineer resets/],
+  ["stop", RUN, around({ state: "emergency_stop" }), /emergency stop of sim is latched/, /no one is in danger.*an engineer resets the stop, here or at the bench/],
   ["away", RUN, around({ state: "away", away_since: "2026-11-28T10:00:00Z" }), /not been heard of since .*2026/, /connected again/],
   ["reservation", { ...RUN, waits_for: HELD } as Run, around({}), /reservation of chen until .*2026.*: endurance/, /when chen lets it start/],
   ["lease", RUN, around({ lease: "anna", lease_until: "2026-11-28T12:00:00Z" }), /anna has the bench until .*2026/, /anna or an engineer/],

@@ -24,7 +24,7 @@ function upright(pen: CanvasRenderingContext2D, box: uPlot.BBox, x: number): voi
   pen.stroke();
 }
 
-export function drawLimits(plot: uPlot, scale: string, lines: readonly LimitLine[]): void {
+export function drawLimits(plot: uPlot, scale: string, lines: readonly Pick<LimitLine, "above" | "below">[]): void {
   inside(plot, (pen, box) => {
     pen.strokeStyle = colour("series-limit");
     pen.setLineDash(DASH.map((one) => one * devicePixelRatio));

@@ -69,15 +69,20 @@ export function Actions({ state, answers = true }: { state: BenchState; answers?
 
 // Where a run is shown that was stopped, and its bench still is.
 export function ResetOf({ bench }: { bench: Bench }): JSX.Element | null {
-  const stopped = bench.state === "emergency_stop", may = useMay();
-  const queue = useData<Run[]>(stopped ? `/benches/${encodeURIComponent(bench.name)}/queue` : null).data ?? [];
-  if (!stopped) return null;
+  if (bench.state !== "emergency_stop") return null;
   return (
     <section class="banner emergency_stop" aria-label={t("State of {bench}", { bench: bench.name })}>
       <p>{bench.why ? <English>{bench.why}</English> : t("Emergency stop")}</p>
-      {bench.running ? <p>{t("The run is being ended.")}</p> : may("engineer") ? <div class="row"><Reset bench={bench} next={nextIn(queue)} /></div> : <p>{t("When it is safe, an engineer resets the emergency stop.")}</p>}
+      <AfterStop bench={bench} />
     </section>
   );
+}
+
+// What there is to do about a stop: whoever may resets it once its run has ended.
+export function AfterStop({ bench }: { bench: Bench }): JSX.Element {
+  const may = useMay(), queue = useData<Run[]>(`/benches/${encodeURIComponent(bench.name)}/queue`).data ?? [];
+  if (bench.running) return <p>{t("The run is being ended.")}</p>;
+  return may("engineer") ? <div class="row"><Reset bench={bench} next={nextIn(queue)} /></div> : <p>{t("When it is safe, an engineer resets the emergency stop.")}</p>;
 }
 
 function AnswerForm({ run }: { run: number }): JSX.Element {

@@ -103,7 +103,7 @@ export function resetText(next: Run | null | undefined): string {
 // The speed that was measured last before or after a stop, beside what resets it.
 export function lastSpeedText(bench: Bench, nowMs: number): string {
   const last = bench.last_speed;
-  if (!last) return t("The last speed of the motor is not known here. Look whether the axle stands.");
+  if (!last) return t("The speed of the motor is not known: the service was started since, or nothing was measured. Look whether the axle stands.");
   const values = { time: roughly(Math.max(0, (nowMs - Date.parse(last.at)) / 1000)), speed: figure(Math.abs(last.speed_rad_s), "rad/s") };
   return last.turns ? t("At the last look, {time} ago, the motor turned at {speed}.", values) : t("At the last look, {time} ago, the motor stood.", values);
 }

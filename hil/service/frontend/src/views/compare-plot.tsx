@@ -7,9 +7,11 @@ import { get } from "../api/client.ts";
 import type { RecordingCurves, RunTraces, RunView } from "../api/types.ts";
 import { figure, wordsOf } from "../format.ts";
 import { t } from "../i18n/text.ts";
+import { drawLimits } from "../plot/canvas.ts";
 import { axis, HEIGHT, onWidth, roleOf, roomy } from "../plot/frame.ts";
 import { tracesOf } from "../plot/traces.ts";
 import { colour, coloured } from "../theme.ts";
+import type { Level } from "./compare-levels.ts";
 
 export interface Stretch {
   run: number;
@@ -33,11 +35,11 @@ export function stretchOf(view: RunView, segment: string, near: boolean): Stretc
   return near ? { run: view.run, step, from: -0.1, to: 2 } : { run: view.run, step, from: mark.start_s - step, to: mark.end_s - step };
 }
 
-export function ComparePlot({ channel, unit, stretches }: { channel: string; unit: string; stretches: Stretch[] }): JSX.Element {
+export function ComparePlot({ channel, unit, stretches, levels }: { channel: string; unit: string; stretches: Stretch[]; levels: Level[] }): JSX.Element {
   const place = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot | null>(null);
   const [laid, setLaid] = useState<Laid[]>([]);
-  const key = JSON.stringify(stretches);
+  const key = JSON.stringify(stretches), drawn = JSON.stringify(levels);
   useEffect(() => {
     const control = new AbortController();
     Promise.all(stretches.map((one) => laidOf(one, channel, control.signal))).then(setLaid).catch(() => {});
@@ -45,19 +47,20 @@ export function ComparePlot({ channel, unit, stretches }: { channel: string; uni
   }, [key, channel]);
   useEffect(() => {
     const element = place.current as HTMLDivElement;
-    const made = make(element, stretches.length, unit);
+    const made = make(element, stretches.length, unit, levels);
     plot.current = made;
     const stops = [coloured.subscribe(() => made.redraw(false, true)), onWidth(element, (width) => made.setSize({ width, height: HEIGHT }))];
     return () => { stops.forEach((stop) => stop()); made.destroy(); plot.current = null; };
-  }, [stretches.length, unit]);
+  }, [stretches.length, unit, drawn]);
   useEffect(() => {
     if (laid.length && laid.length === stretches.length) plot.current?.setData(uPlot.join(laid.map((one) => [one.time, one.highest, one.lowest] as uPlot.AlignedData)), true);
-  }, [laid, unit]);
+  }, [laid, unit, drawn]);
+  const limits = levels.length ? t("limit {limit}", { limit: levels.map(({ value }) => figure(value, unit)).join(", ") }) : "";
   const peaks = laid.map((one) => figure(peakOf(one))).join(", ");
   return (
     <figure class="plot">
-      <figcaption><b>{wordsOf(channel)}</b><span class="quiet">{peaks ? t("largest {peaks} {unit}", { peaks, unit }) : "…"}</span></figcaption>
-      <div class="canvas" ref={place} role="img" aria-label={t("{channel} of runs {runs} from the step; largest {peaks} {unit}", { channel: wordsOf(channel), runs: stretches.map((one) => (one.recording === undefined ? one.run : t("recording {number}", { number: one.recording }))).join(", "), peaks, unit })} />
+      <figcaption><b>{wordsOf(channel)}</b><span class="quiet">{peaks ? [t("largest {peaks} {unit}", { peaks, unit }), limits].filter(Boolean).join(", ") : "…"}</span></figcaption>
+      <div class="canvas" ref={place} role="img" aria-label={t("{channel} of runs {runs} from the step; largest {peaks} {unit}", { channel: wordsOf(channel), runs: stretches.map((one) => (one.recording === undefined ? one.run : t("recording {number}", { number: one.recording }))).join(", "), peaks, unit }) + (limits && `, ${limits}`)} />
     </figure>
   );
 }
@@ -84,17 +87,23 @@ async function ofRecording(recording: number, step: number, from: number, to: nu
   }
 }
 
+// A limit that a run fails is in sight.
+const within = (low: number | null, high: number | null, failed: number[]): [number | null, number | null] =>
+  low === null || high === null ? [low, high] : [Math.min(low, ...failed), Math.max(high, ...failed)];
+
 const EMPTY: Laid = { time: [], lowest: [], highest: [] };
 
 // The first run is drawn wider, so that one that lies exactly over it shows at its edges.
-function make(element: HTMLElement, count: number, unit: string): uPlot {
+function make(element: HTMLElement, count: number, unit: string, levels: Level[]): uPlot {
+  const failed = levels.filter((one) => one.failed).map(({ value }) => value);
   const series = (at: number): uPlot.Series => ({ stroke: () => colour(`series-${roleOf(at)}`), width: at ? 1.2 : 3, points: { show: false }, spanGaps: true });
   return new uPlot({
     width: Math.max(200, element.clientWidth), height: HEIGHT, legend: { show: false },
-    scales: { x: { time: false }, y: { range: (_, low, high) => roomy(low, high) } },
+    scales: { x: { time: false }, y: { range: (_, low, high) => roomy(...within(low, high, failed)) } },
     axes: [axis({ space: 60, size: 28 }), axis({ size: 56, unit })],
     series: [{}, ...Array.from({ length: count }, (_, at) => [series(at), series(at)]).flat()],
     bands: Array.from({ length: count }, (_, at) => ({ series: [2 * at + 1, 2 * at + 2] as [number, number], fill: () => colour(`series-${roleOf(at)}`) })),
+    hooks: { draw: [(plot) => drawLimits(plot, "y", levels.map(({ value }) => ({ above: value })))] },
     cursor: { sync: { key: "compare" }, drag: { x: true, y: false }, points: { show: false } },
   }, [[], ...Array.from({ length: 2 * count }, () => [])] as unknown as uPlot.AlignedData, element);
 }

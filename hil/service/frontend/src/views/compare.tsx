@@ -14,6 +14,7 @@ import { useQuery } from "../router.ts";
 import { runInWords } from "../ui/run-kind.ts";
 import { linkTo, Heading, Section } from "../ui/parts.tsx";
 import { recordingsFrom, type Beside } from "./compare-beside.ts";
+import { levelsOf } from "./compare-levels.ts";
 import { ChooseRecordings } from "./compare-recordings.tsx";
 import { ComparedCriteria } from "./compare-criteria.tsx";
 import { Differences, Lead } from "./compare-inputs.tsx";
@@ -149,7 +150,7 @@ function Compared({ runs, beside, query, setQuery }: { runs: number[]; beside: B
             <label>{t("Channel")} <select value="" onChange={(event) => put("channels", [...channels, event.currentTarget.value].join(","))}><option value="" disabled>{t("add …")}</option>{segment.channels.filter((one) => !channels.includes(one)).map((one) => <option key={one}>{one}</option>)}</select></label>
             {channels.length ? <button type="button" class="plain" onClick={() => put("channels", channels.slice(0, -1).join(","))}>{t("Leave out the last")}</button> : null}
           </div>
-          <div class="plots part">{channels.map((channel) => <ComparePlot key={channel} channel={channel} unit={views[0]?.channels[channel] ?? ""} stretches={stretches} />)}</div>
+          <div class="plots part">{channels.map((channel) => <ComparePlot key={channel} channel={channel} unit={views[0]?.channels[channel] ?? ""} stretches={stretches} levels={levelsOf(views, segment.id, channel)} />)}</div>
         </Section>
       ) : <p class="quiet">{t("No segment of the same name and kind is in all of these runs: their traces cannot be laid over each other.")}</p>}
       {pairs?.length ? <ComparedCriteria pairs={pairs} /> : null}

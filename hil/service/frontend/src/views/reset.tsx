@@ -8,17 +8,18 @@ import { t } from "../i18n/text.ts";
 import { lastSpeedText, resetText } from "./bench-words.ts";
 import { useNow } from "./panel-prompt.tsx";
 
-// A recording may end before the axle stands: then one click must not be enough.
+// A recording may end before the axle stands, and a service that was started since knows no speed: then one click
+// must not be enough.
 export function Reset({ bench, next }: { bench: Bench; next: Run | null | undefined }): JSX.Element {
-  const said = lastSpeedText(bench, useNow()), turned = bench.last_speed?.turns ?? false;
+  const said = lastSpeedText(bench, useNow()), unsure = bench.last_speed?.turns ?? true;
   const reset = () => {
-    if (turned && !confirm(`${said}\n${t("Does the axle of {bench} stand still now? Reset the emergency stop only if you have seen it.", { bench: bench.name })}`)) return;
+    if (unsure && !confirm(`${said}\n${t("Does the axle of {bench} stand still now? Reset the emergency stop only if you have seen it.", { bench: bench.name })}`)) return;
     void attempt(() => post(`/benches/${encodeURIComponent(bench.name)}/reset`));
   };
   return (
     <>
-      <button type="button" class={turned ? "" : "main"} onClick={reset}>{resetText(next)}</button>
-      <span class={turned ? "bad" : "quiet"}>{said}</span>
+      <button type="button" class={unsure ? "" : "main"} onClick={reset}>{resetText(next)}</button>
+      <span class={unsure ? "bad" : "quiet"}>{said}</span>
     </>
   );
 }

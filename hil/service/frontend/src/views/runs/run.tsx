@@ -5,7 +5,6 @@ import { post } from "../../api/client.ts";
 import type { Bench, Run, RunView as View } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt, isMissing, useData } from "../../data.ts";
-import { figure } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
 import { t, tx } from "../../i18n/text.ts";
 import { useLive } from "../../live.ts";
@@ -21,6 +20,7 @@ import { Criteria } from "../criteria.tsx";
 import { Notes } from "./notes.tsx";
 import { isPassed, Outcome } from "./outcome.tsx";
 import { look, rangeOfSegment } from "./places.ts";
+import { valuesOf } from "./run-values.ts";
 import { Unsettled } from "./unsettled.tsx";
 import { WhyItWaits } from "./waiting.tsx";
 import { BestRun } from "./best-run.tsx";
@@ -68,7 +68,7 @@ function Found({ run, bench }: { run: Run; bench: Bench | null }): JSX.Element {
 }
 
 function RunFacts({ run }: { run: Run }): JSX.Element {
-  const values = Object.entries(run.values).map(([name, value]) => `${name} = ${figure(value)}`).join(", ");
+  const values = valuesOf(run);
   const safe = { confirmed: t("confirmed"), not_confirmed: t("NOT CONFIRMED"), not_needed: t("not needed") };
   return (
     <Facts>

@@ -12,6 +12,7 @@ import { go, useQuery } from "../../router.ts";
 import { Badge, Heading, linkTo, Moment, Scroll, verdictOf } from "../../ui/parts.tsx";
 import { RunFilters } from "./run-filters.tsx";
 import { PAGE, queryFrom, sorted, toAddress, toService, type Order, type RunsQuery } from "./runs-query.ts";
+import { valuesOf } from "./run-values.ts";
 
 const AGAIN_MS = 10_000;
 const MOST_COMPARED = 6;
@@ -84,7 +85,7 @@ function Table({ runs, query, chosen, busy, onChoose, onSort }: TableOptions): J
 
 function Row({ found, withValue, chosen, onChoose }: { found: FoundRun; withValue: boolean; chosen: boolean; onChoose: (run: number) => void }): JSX.Element {
   const { run } = found;
-  const values = Object.entries(run.values).map(([name, value]) => `${name} = ${figure(value)}`).join(", ");
+  const values = valuesOf(run);
   const about = [values, run.reason?.split("\n")[0] ?? ""].filter(Boolean).join("; ");
   return (
     <tr>

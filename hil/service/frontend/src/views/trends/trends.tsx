@@ -32,6 +32,7 @@ export function Trends({ bench, plan, empty }: { bench: string; plan: string; em
   }, [all, dut]);
   const devices = dut && !duts.includes(dut) ? [dut, ...duts] : duts;
   const trend = found.find((one) => one.criterion === criterion) ?? found[0];
+  if (empty && asked.error) return <p class="bad" role="alert"><English>{asked.error.message}</English></p>;
   if (!trend) return empty && asked.data ? <p class="quiet">{empty}</p> : null;
   return (
     <Section title={t("Trend over runs of {plan}", { plan })} label="trend">

@@ -1,0 +1,69 @@
+"""A bench that is stopped: reset in the list of benches too, and only by who has looked at the axle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright import sync_api as playwright
+
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, heading, region, to
+from tests.hil.service.looks import refuse_hard_to_use
+from tests.hil.service.served import SHORT, Served, served
+
+pytestmark = IN_A_BROWSER
+_RESET = "It is safe: reset the emergency stop"
+
+
+@pytest.fixture
+def there(tmp_path: Path) -> Iterator[Served]:
+    with served(tmp_path / "data", "--rate", "1000", state=tmp_path / "state") as service:
+        service.give("short", SHORT)
+        yield service
+
+
+def test_a_stop_is_reset_in_the_list_of_benches(page: playwright.Page, there: Served) -> None:
+    there.over(there.queue())
+    there.post("/benches/sim/emergency-stop")
+    to(page, there, "benches")
+    card = page.get_by_role("listitem").filter(has_text="sim")
+    expect(card).to_contain_text("the motor stood")
+    refuse_hard_to_use(page)
+    card.get_by_role("button", name=_RESET).click()
+    expect(card).to_contain_text("Free")
+    assert there.get("/benches/sim")["state"] == "free"
+
+
+def test_where_no_speed_is_known_a_reset_asks_whether_the_axle_stands(
+    page: playwright.Page, there: Served
+) -> None:
+    there.post("/benches/sim/emergency-stop")  # nothing was measured since the service was started
+    to(page, there, "benches/sim")
+    state, asked = region(page, "State of sim"), list[str]()
+    expect(state).to_contain_text("The speed of the motor is not known: the service was started since")
+
+    def dismiss(dialog: playwright.Dialog) -> None:
+        asked.append(dialog.message)
+        dialog.dismiss()
+
+    page.once("dialog", dismiss)
+    state.get_by_role("button", name=_RESET).click()
+    assert "Does the axle of sim stand still now?" in asked[0]
+    assert there.get("/benches/sim")["state"] == "emergency_stop"
+    page.once("dialog", lambda dialog: dialog.accept())
+    state.get_by_role("button", name=_RESET).click()
+    expect(heading(page, "Bench sim Free")).to_be_visible()
+
+
+def test_a_run_that_was_stopped_before_it_began_says_so_in_the_list(
+    page: playwright.Page, there: Served
+) -> None:
+    run = there.queue()
+    there.until(run, lambda found: found["state"] == "running")
+    there.post("/benches/sim/emergency-stop")
+    there.over(run)
+    to(page, there, "benches/sim")
+    expect(region(page, "Latest runs")).to_contain_text("stopped before it began: emergency stop")
+    to(page, there, "runs")
+    expect(page.locator("tbody")).to_contain_text("stopped before it began: emergency stop")
