@@ -16,6 +16,7 @@ const RESPONSES: Record<string, string> = { warn: t("warning"), pause: t("pause"
 // The engine holds a run; at the page it is paused, in English too.
 export const pausePhrases = (words: Words): Phrase[] => [
   [/^held, torque off, the dynos hold their speed: (?<cause>.+)$/s, ({ cause = "" }) => t("paused, torque off, the dynos hold their speed: {cause}", { cause: words(cause) })],
+  [/^held: paused by the operator$/, () => t("paused by the operator")],
   [/^held: (?<cause>.+)$/s, ({ cause = "" }) => t("paused: {cause}", { cause: words(cause) })],
   [/^being ended: (?<doing>held: .+)$/s, ({ doing = "" }) => t("being ended: {doing}", { doing: words(doing) })],
   [/^(?<reached>.+); it has already held the run (?<count>\d+) times$/s, ({ reached = "", count = "" }) => t("{reached}; it has already paused the run {count} times", { reached: words(reached), count })],

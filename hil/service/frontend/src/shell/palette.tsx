@@ -9,7 +9,9 @@ import { t } from "../i18n/text.ts";
 import { go } from "../router.ts";
 import { session } from "../session.ts";
 import { Store, useStore } from "../store.ts";
+import { kindInWords } from "../ui/kinds.ts";
 import { runInWords } from "../ui/run-kind.ts";
+import { valuesOf } from "../views/runs/run-values.ts";
 import { found, type Entry } from "./matching.ts";
 import { commands } from "./commands.ts";
 import { benchInSight } from "./stop.tsx";
@@ -91,6 +93,10 @@ const plans = async (): Promise<Entry[]> => (await get<Plan[]>("/plans")).map((p
 const named = async (path: string, kind: string, also: string, address: (name: string) => string): Promise<Entry[]> => (await get<{ name: string }[]>(path)).map(({ name }) => ({ kind, also, name, about: "", path: address(name) }));
 
 const TYPING_MS = 150;
+const VERDICTS = ["pass", "fail", "error", "done"] as const;
+
+// A verdict that was typed, in the reader's language or in English.
+const verdictIn = (words: string): string => VERDICTS.find((one) => words.toLowerCase().split(/\s+/).some((word) => word === one || word === kindInWords(one).toLowerCase())) ?? "";
 
 // The service looks for a text as a whole: the others of its words are looked for in what it finds by this one.
 const longestOf = (words: string): string => words.split(/\s+/).reduce((longest, one) => (one.length > longest.length ? one : longest), "");
@@ -104,7 +110,8 @@ function useRuns(text: string): Entry[] {
     const find = async () => {
       const numbered = number ? get<Run>(`/runs/${number}`, control.signal).then((run) => [run]) : null;
       const worded = [...new Set(words ? [words, longestOf(words)] : [])].map((one) => get<FoundRuns>(`/run-list?${new URLSearchParams({ text: one, most: "20" })}`, control.signal).then(({ runs: all }) => all.map(({ run }) => run)));
-      const asked = [numbered, ...worded, get<Run[]>("/runs?most=5", control.signal)].map((one) => one?.catch(() => []) ?? []);
+      const verdict = verdictIn(words), judged = verdict ? get<FoundRuns>(`/run-list?${new URLSearchParams({ verdict, most: "20" })}`, control.signal).then(({ runs: all }) => all.map(({ run }) => run)) : null;
+      const asked = [numbered, ...worded, judged, get<Run[]>("/runs?most=5", control.signal)].map((one) => one?.catch(() => []) ?? []);
       const all = (await Promise.all(asked)).flat();
       if (!control.signal.aborted) setRuns([...new Map(all.map((run) => [run.id, run])).values()].map(entryOf));
     };
@@ -114,4 +121,8 @@ function useRuns(text: string): Entry[] {
   return runs;
 }
 
-const entryOf = (run: Run): Entry => ({ kind: t("run"), name: t("Run {run}", { run: run.id }), about: `${run.title || run.plan}, ${run.bench}, ${runInWords(run)}`, path: to.run(run.id), also: `Run ${run.id}` });
+// Also by its number alone, by who asked for it and by what was tested.
+const entryOf = (run: Run): Entry => ({
+  kind: t("run"), name: t("Run {run}", { run: run.id }), path: to.run(run.id), also: `Run ${run.id} #${run.id} ${run.plan} ${run.requested_by} ${run.dut}`,
+  about: [run.title || run.plan, valuesOf(run), run.bench, runInWords(run)].filter(Boolean).join(", "),
+});
