@@ -22,7 +22,7 @@ from hil.engine.process.hardware_process import ASKED_WITHIN_S, LAST_WORDS_S
 
 if TYPE_CHECKING:
     from hil.app.feedback import Show
-    from hil.engine.ipc.ipc_messages import EmergencyAsked, Question, RunAsked
+    from hil.engine.ipc.ipc_messages import EmergencyAsked, Message, Question, RunAsked
     from hil.engine.ipc.ipc_pipe import IpcPipe
 
 LOG_FILE = "log.txt"
@@ -38,6 +38,7 @@ class _Service(LoggedFeedback):
     def __init__(self, pipe: IpcPipe, stop_line: IpcPipe | None) -> None:
         self._pipe, self._stop_line = pipe, stop_line
         self._asked_to_end = False
+        self._early: list[Message] = []  # came with the request: somebody was quick
 
     def request(self) -> RunAsked | None:
         """The run that is asked for; None if the service is gone before it has asked."""
@@ -46,9 +47,14 @@ class _Service(LoggedFeedback):
         until_s = time.monotonic() + ASKED_WITHIN_S
         while not self._pipe.gone and time.monotonic() < until_s:
             self._pipe.wait(1.0)
+            found: RunAsked | None = None
             for message in self._pipe.fetch():
-                if isinstance(message, RunAsked):
-                    return message
+                if found is None and isinstance(message, RunAsked):
+                    found = message
+                else:
+                    self._early.append(message)
+            if found is not None:
+                return found
         return None
 
     def tell(self, text: str, question: Question | None = None) -> None:
@@ -63,7 +69,9 @@ class _Service(LoggedFeedback):
         from hil.engine.run.operator import GONE
 
         lines: list[str | EmergencyAsked] = []
-        for message in [*(self._stop_line.fetch() if self._stop_line else ()), *self._pipe.fetch()]:
+        early, self._early = self._early, []
+        stops = self._stop_line.fetch() if self._stop_line else ()
+        for message in [*stops, *early, *self._pipe.fetch()]:
             if isinstance(message, Typed):
                 lines.append(message.line)
             elif isinstance(message, EmergencyAsked):

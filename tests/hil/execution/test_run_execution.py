@@ -39,7 +39,10 @@ def test_of_one_that_left_nothing_no_moment_is_known(tmp_path: Path) -> None:
 
 
 def _end_of_one_that_meets(
-    met: Callable[[Bench], AbstractContextManager[object]], folder: Path, of: str = "sim"
+    met: Callable[[Bench], AbstractContextManager[object]],
+    folder: Path,
+    of: str = "sim",
+    early: Callable[[RunExecution], None] = lambda run: None,
 ) -> RunEnd:
     """Of a run that is executed while something stands in its way that was not there when it was taken."""
     data = RunData.model_validate(
@@ -55,6 +58,7 @@ def _end_of_one_that_meets(
 
     async def ended() -> RunEnd:
         run = await RunExecution.begin(taken, bench, folder / "run")
+        early(run)
         return await run.ended(bench, lambda: None, lambda: False)
 
     with met(bench):
@@ -77,3 +81,10 @@ def test_a_run_that_meets_a_stop_latched_meanwhile_is_over(tmp_path: Path) -> No
 def test_a_run_that_meets_another_program_waits_again(tmp_path: Path) -> None:
     end = _end_of_one_that_meets(lambda bench: alone_on(bench.file), tmp_path, of="rear_axle_socketcan")
     assert end.state == "queued"
+
+
+@pytest.mark.slow
+def test_what_is_asked_before_the_process_is_there_is_not_lost(tmp_path: Path) -> None:
+    end = _end_of_one_that_meets(lambda bench: nullcontext(), tmp_path, early=lambda run: run.process.end())
+    assert end.state == "ended"
+    assert "stopped by the operator" in (end.reason or (end.result.reason if end.result else ""))
