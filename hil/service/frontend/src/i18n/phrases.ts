@@ -6,7 +6,7 @@ import { FILE_REFUSALS } from "./file-refusals.ts";
 import { FORM_WORDS } from "./form-words.ts";
 import { HOLDS, REFUSALS } from "./refusal-phrases.ts";
 import { pausePhrases, runPhrases } from "./run-phrases.ts";
-import { wordsOf as wordsOfFirst, type Phrase, type Said } from "./said.ts";
+import { personIn, wordsOf as wordsOfFirst, type Phrase, type Said } from "./said.ts";
 import { t } from "./text.ts";
 
 const named = (names = ""): string => (names === "RMCU and dynos" ? t("RMCU and dynos") : names);
@@ -50,7 +50,7 @@ const PHRASES: Phrase[] = [
   ...REFUSALS,
   ...FILE_REFUSALS,
   ...FORM_WORDS,
-  [/^emergency stop since (?<since>[^,]+), by (?<person>.+?): requested by .+$/, (of) => t("emergency stop since {since}, by {person}", of)],
+  [/^emergency stop since (?<since>[^,]+), by (?<person>.+?): requested by .+$/, (of) => t("emergency stop since {since}, by {person}", { ...of, person: personIn(of["person"]) })],
 ];
 
 // A line of several: the field, then what is wrong with it.

@@ -1,7 +1,7 @@
 // Refusals of the service at runs, benches, their queues and people, and what it says to do then, known by their form.
 
 import { kindInWords } from "../ui/kinds.ts";
-import { said, type Phrase } from "./said.ts";
+import { personIn, said, type Phrase } from "./said.ts";
 import { t } from "./text.ts";
 
 export const REFUSALS: Phrase[] = [
@@ -49,7 +49,7 @@ export const REFUSALS: Phrase[] = [
   said("await or cancel runs and studies, have reservations and leases given back, then try again"),
   said("another service of the same database drives the bench: {place}"),
   said("end that service, or remove this bench here"),
-  [/^requested by (?<who>[^;]+); its agent has not confirmed it$/, (of) => t("emergency stop, requested by {who}; its agent has not confirmed it", of)],
+  [/^requested by (?<who>[^;]+); its agent has not confirmed it$/, (of) => t("emergency stop, requested by {who}; its agent has not confirmed it", { ...of, who: personIn(of["who"]) })],
   [/^requested by (?<who>[^;]+); its agent has not confirmed it; its agent (?<agent>.+) is not connected since (?<since>[^;]+)$/, (of) => t("emergency stop, requested by {who}; its agent {agent} is not connected since {since} and has not confirmed it", of)],
   [/^its agent (?<agent>.+) is not connected since (?<since>[^;]+)$/, (of) => t("its agent {agent} is not connected since {since}", of)],
   [/^its agent (?<agent>.+) is not connected since (?<since>[^;]+); run (?<run>\d+) ends there by itself; its agent uploads it later$/, (of) => t("its agent {agent} is not connected since {since}; run {run} ends there by itself; its agent uploads it later", of)],
@@ -93,8 +93,8 @@ export const REFUSALS: Phrase[] = [
   said("took more than {seconds} s"),
   said("its process ended"),
   said("look at the service's log"),
-  [/^emergency stop: requested by (?<who>.+?) from (?<place>\S+?)(?: .*)?$/, (of) => t("emergency stop, requested by {who} from {place}", of)],
-  [/^emergency stop: requested by (?<who>.+?)(?: over the service's API| at the service's page| on the service's page)?$/, (of) => t("emergency stop, requested by {who}", of)],
+  [/^emergency stop: requested by (?<who>.+?) from (?<place>\S+?)(?: .*)?$/, (of) => t("emergency stop, requested by {who} from {place}", { ...of, who: personIn(of["who"]) })],
+  [/^emergency stop: requested by (?<who>.+?)(?: over the service's API| at the service's page| on the service's page)?$/, (of) => t("emergency stop, requested by {who}", { ...of, who: personIn(of["who"]) })],
   [/^make sure that no one is in danger; then: reset it at its service, or: (?<command>hil bench reset .+)$/, (of) => t("make sure that no one is in danger; then reset it here, or with {command}", of)],
   [/^segment '(?<segment>[^']+)' was not run$/, (of) => t("segment '{segment}' was not run", of)],
   [/^segment '(?<segment>[^']+)' was stopped after (?<seconds>\S+) s$/, (of) => t("segment '{segment}' was stopped after {seconds} s", of)],

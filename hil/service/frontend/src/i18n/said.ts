@@ -18,6 +18,12 @@ const formOf = (text: string): RegExp =>
 // `npm run texts` finds these as it finds those of `t`.
 export const said = (text: string): Phrase => [formOf(text), (of) => t(text, inWords(of))];
 
+// Who asked: one who is not signed in is known by their address.
+export function personIn(name = ""): string {
+  const place = /^somebody at (\S+)$/.exec(name)?.[1];
+  return place ? t("somebody at {place}", { place }) : name;
+}
+
 // The words of the first form that fits; null if none does.
 export function wordsOf(phrases: readonly Phrase[], text: string): string | null {
   for (const [form, words] of phrases) {
