@@ -101,14 +101,17 @@ class Hypothesis:
             self, terms=tuple(self.terms[i] for i in keep), opened=tuple(self.opened[i] for i in keep)
         )
 
+    def with_values(self, index: int, values: Mapping[str, float], opened: frozenset[str]) -> Hypothesis:
+        """The same, some numbers of an effect other ones, and which of its optional numbers move."""
+        terms, free, use = list(self.terms), list(self.opened), self.terms[index]
+        terms[index], free[index] = EffectUse(use.id, {**use.values, **values}), opened
+        return replace(self, terms=tuple(terms), opened=tuple(free))
+
     def closed(self, index: int, optional: str) -> Hypothesis:
         """The same, an optional number of an effect where it does nothing."""
-        use = self.terms[index]
-        default = next(one.default for one in EFFECTS[use.id].parameters if one.name == optional)
-        terms, opened = list(self.terms), list(self.opened)
-        terms[index] = EffectUse(use.id, {**use.values, optional: default})
-        opened[index] = opened[index] - {optional}
-        return replace(self, terms=tuple(terms), opened=tuple(opened))
+        parameters = EFFECTS[self.terms[index].id].parameters
+        default = next(one.default for one in parameters if one.name == optional)
+        return self.with_values(index, {optional: default}, self.opened[index] - {optional})
 
     @property
     def kind(self) -> str:
@@ -127,7 +130,7 @@ class Hypothesis:
         for index, use in enumerate(self.terms):
             for parameter in EFFECTS[use.id].parameters:
                 if parameter.fitted and (not parameter.optional or parameter.name in self.opened[index]):
-                    found.append(_of_effect(index, parameter, float(use.values[parameter.name])))
+                    found.append(_of_effect(index, use, parameter))
         return found
 
     def _number(self, name: str, scales: Mapping[str, float]) -> Coordinate:
@@ -167,10 +170,14 @@ def label_of(use: EffectUse) -> str:
     return f"{use.id}({', '.join(about)})" if about else use.id
 
 
-def _of_effect(index: int, parameter: Parameter, value: float) -> Coordinate:
+def _of_effect(index: int, use: EffectUse, parameter: Parameter) -> Coordinate:
+    """A number of an effect; a gain is calibrated as numbers of a base are, or it may be anything."""
+    effect, value = EFFECTS[use.id], float(use.values[parameter.name])
+    is_gain = parameter.name in effect.acting() and 0.0 < effect.off < math.inf
+    base = effect.off if is_gain else None
     lower, upper = parameter.within or (parameter.lower, parameter.upper)
     step = 1e-3 * parameter.step
     if parameter.typical is None and value > 0.0:
-        return Coordinate(index, parameter.name, value, 1.0, True, max(lower, 1e-9), upper, step=step)
+        return Coordinate(index, parameter.name, value, 1.0, True, max(lower, 1e-9), upper, base, step)
     scale = max(abs(value), parameter.typical or 1e-3)
-    return Coordinate(index, parameter.name, value, scale, False, lower, upper, step=step)
+    return Coordinate(index, parameter.name, value, scale, False, lower, upper, base, step)

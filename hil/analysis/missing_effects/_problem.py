@@ -119,9 +119,17 @@ class Problem:
         return np.asarray(shown[0])
 
     def errors(self, hypothesis: Hypothesis, starts: Sequence[Array]) -> list[Array]:
-        """Measured less simulated of each recording, blocks x 3; NaN where a channel was not recorded."""
+        """Measured less simulated of each recording, blocks x 3; NaN where a channel was not recorded.
+
+        What runs away is far off, not missing: it would be the likeliest of all.
+        """
         packed = [hypothesis.packed()]
-        return self.each(lambda i: self.series[i].measured - self.simulated(i, packed, starts[i][None])[0])
+
+        def error(index: int) -> Array:
+            shown = self.simulated(index, packed, starts[index][None])[0]
+            return np.asarray(self.series[index].measured - _bounded(shown))
+
+        return self.each(error)
 
     def weighed(self, index: int, values: Array) -> Array:
         """sets x blocks x 3 as weighed transforms, sets x numbers: half the squares add to -log L.

@@ -31,6 +31,7 @@ Array = npt.NDArray[np.float64]
 NUMBERS = {"dead_time": "torque_delay", "viscous_drag": "viscous_drag"}
 """Effects that are a change of a number which a base may have, and which is free there."""
 _AT_ONCE = 24  # simulations
+_AS_IT_IS = Direction({}, 1.0, 1.0)
 _SWEEPS = 20  # of coordinate descent over at most two bounded factors
 
 
@@ -236,6 +237,22 @@ def promised_by(problem: Problem, at: Linearised, hypotheses: Sequence[Hypothesi
     drops = np.where(np.isfinite(squares), factors * right - 0.5 * factors**2 * squares, -np.inf)
     whole = 0.5 * float(at.left @ at.left)
     return [growth(float(drop), whole) for drop in drops]
+
+
+def at_its_best(
+    problem: Problem, at: Linearised, hypotheses: Sequence[Hypothesis]
+) -> tuple[float, Hypothesis]:
+    """Of neighbours of a point the one that promises most growth of log L, its other numbers moved along."""
+    project = _Projection(problem, at)
+    gain, best = -math.inf, at.point.hypothesis
+    for first in range(0, len(hypotheses), _AT_ONCE):
+        some = hypotheses[first : first + _AT_ONCE]
+        of = project.products(some)
+        for place, one in enumerate(some):
+            _, drop, moves = project.explained(of, slice(place, place + 1), (_AS_IT_IS,))
+            if drop > gain:
+                gain, best = drop, one.moved(at.coordinates, moves)
+    return growth(gain, 0.5 * float(at.left @ at.left)), best
 
 
 def best_by_name(found: Sequence[Promise], each: int) -> list[list[Promise]]:

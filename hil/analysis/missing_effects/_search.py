@@ -17,6 +17,7 @@ from hil.analysis.missing_effects._fit import (
 )
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._linear import structures
+from hil.analysis.missing_effects._minima import other_minimum
 from hil.analysis.missing_effects._odds import Candidate, remains
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import (
@@ -31,10 +32,9 @@ HALF = 0.5  # of what stays without it a name must take off
 _TRIED = 8  # hypotheses that a step begins with, the most promising ones; half of them go on each time
 _RIVALS = 2  # of a step are fitted to their end
 _BESIDE = 0.3  # of an effect's first number: where an optional one in the same unit begins
-_ASIDE = (
-    -0.02,
-    0.02,
-)  # of an optional number that is set already: how far it is moved to see what it could bring
+_ASIDE = (0.98, 1.02)  # times an optional number that is set already: to see what moving it could bring
+_FAR = (0.25, 0.5, 2.0, 4.0)  # times the same: a fit begins there, as a play has many minima
+_REACHES = (1.0, 0.25)  # how far another minimum is looked for: as far as usual, then near
 _MOST_NAMES = 4
 
 
@@ -163,7 +163,23 @@ def _best_of(
         tried = _best_of_each_name(done, [done.fitted(one.point.hypothesis, one, rounds) for one in tried])
         rounds *= 2
     ended = [_opened(done, done.fitted(one.point.hypothesis, one), show) for one in tried]
-    return max(ended, key=done.score, default=None)
+    grown = max(ended, key=done.score, default=None)
+    return grown and _out_of_minima(done, grown)
+
+
+def _out_of_minima(done: Candidates, best: Candidate) -> Candidate:
+    """A hypothesis with an abrupt effect, fitted again from where another minimum promises more."""
+    if not any(EFFECTS[use.id].abrupt for use in best.point.hypothesis.terms):
+        return best
+    reaches = list(_REACHES)
+    while reaches:
+        problem = done.weighed_as(best)
+        gain, begins = other_minimum(problem, linearised(problem, best.point), reaches[0])
+        tried = done.fitted(begins, best) if gain > GROWING else best
+        if done.score(tried) < done.score(best) + GROWING:
+            reaches.pop(0)
+        best = max(best, tried, key=done.score)
+    return best
 
 
 def _caught_up(done: Candidates, tried: Sequence[Candidate]) -> list[Candidate]:
@@ -209,8 +225,25 @@ def _suggested(done: Candidates, best: Candidate) -> list[tuple[Hypothesis, floa
         for one in sizes if abrupt else sizes[:1]:
             starts = (base.with_term(one.use) for base in (best.point.hypothesis, one.numbers))
             found.append((_likelier(done, best, *starts), one.gain))
+        elsewhere = _as_elsewhere(done, best, sizes[0].label)
+        if elsewhere:
+            found.append((_likelier(done, best, *elsewhere), sizes[0].gain))
     found += _beside_the_base(done, best, least)
     return sorted(found, key=lambda one: -one[1])
+
+
+def _as_elsewhere(done: Candidates, best: Candidate, label: str) -> list[Hypothesis]:
+    """Beside an abrupt effect: one more as it was in the likeliest hypothesis that has it.
+
+    A play that is fitted alone makes up for what else is missing, and what joins it for what that spoiled.
+    """
+    elsewhere = max((one for one in done.found.values() if label in one.names), key=done.score, default=None)
+    if elsewhere is None or not any(EFFECTS[use.id].abrupt for use in best.point.hypothesis.terms):
+        return []
+    mine, other = best.point.hypothesis, elsewhere.point.hypothesis
+    at = other.names.index(label)
+    joined = mine.with_term(other.terms[at], other.opened[at])
+    return [joined, replace(joined, numbers=other.numbers)]
 
 
 def _beside_the_base(done: Candidates, best: Candidate, least: float) -> list[tuple[Hypothesis, float]]:
@@ -244,8 +277,14 @@ def _likelier(done: Candidates, near: Candidate, *starts: Hypothesis) -> Hypothe
 
 
 def _opened(done: Candidates, best: Candidate, show: Callable[[str], None]) -> Candidate:
-    """With those optional numbers of its last effect that earn their place."""
-    index = len(best.names) - 1
+    """With those optional numbers of its effects that earn their place, of the last one first."""
+    for index in reversed(range(len(best.names))):
+        best = _opened_of(done, best, index, show)
+    return best
+
+
+def _opened_of(done: Candidates, best: Candidate, index: int, show: Callable[[str], None]) -> Candidate:
+    """With those optional numbers of one of its effects that earn their place."""
     for parameter in EFFECTS[best.point.hypothesis.terms[index].id].parameters:
         hypothesis = best.point.hypothesis
         opened = hypothesis.opened[index]
@@ -256,12 +295,13 @@ def _opened(done: Candidates, best: Candidate, show: Callable[[str], None]) -> C
         first = EFFECTS[use.id].parameters[0]
         size = _BESIDE * abs(float(use.values[first.name])) if parameter.unit == first.unit else 0.0
         set_already = float(use.values[parameter.name])
-        aside = [set_already * (1.0 + share) for share in _ASIDE if set_already != parameter.default]
+        aside, far = (
+            [set_already * factor for factor in factors if set_already != parameter.default]
+            for factors in (_ASIDE, _FAR)
+        )
         wider = [
-            hypothesis.without(index).with_term(
-                EffectUse(use.id, {**use.values, parameter.name: value}), opened | {parameter.name}
-            )
-            for value in (*parameter.opens, size, -size, *aside)
+            hypothesis.with_values(index, {parameter.name: value}, opened | {parameter.name})
+            for value in (*parameter.opens, size, -size, *aside, *far)
             if value and value != set_already and parameter.lower <= value <= parameter.upper
         ]
         if not wider:
@@ -273,10 +313,9 @@ def _opened(done: Candidates, best: Candidate, show: Callable[[str], None]) -> C
         show(f"{best.names[index]}: {parameter.name}")
         begins = wider[int(np.argmax(gains))]
         if begins.terms[index].values[parameter.name] in aside:
-            begins = replace(hypothesis, opened=(*hypothesis.opened[:index], opened | {parameter.name}))
+            begins = hypothesis.with_values(index, {}, opened | {parameter.name})
         if 0.0 in parameter.opens:  # where it does nothing: a fit goes on from what is settled
-            rest = EffectUse(use.id, {**use.values, parameter.name: 0.0})
-            begins = hypothesis.without(index).with_term(rest, opened | {parameter.name})
+            begins = hypothesis.with_values(index, {parameter.name: 0.0}, opened | {parameter.name})
         tried = done.fitted(begins, best, _RIVALS)
         if done.score(tried) > done.score(best):  # the next one is judged by what this one leaves
             best = done.fitted(tried.point.hypothesis, tried)

@@ -206,9 +206,9 @@ def _remains(of: Judged, before: Candidate, after: Candidate, wrong: Array | flo
         wrong: variance that stays by what laws get wrong, (3,), whatever takes it off.
     """
     problem, done = of.done.problem, of.done
-    if after.prior - before.prior > done.cost_of_a_number(after) and done.score(after) > done.score(before):
-        return 0.0
     had, has = of.left(before), of.left(after) + wrong
+    if after.prior - before.prior > done.cost_of_a_number(after) and done.score(after) > done.score(before):
+        had = np.fmax(had, of.left(done.at(_fewer(after.point.hypothesis, before.names), after)))
     there, noise = np.isfinite(has), problem.noise**2
     if np.all(has[there] <= problem.slow_noise * noise[there]):
         grew = after.log_likelihood - before.log_likelihood
@@ -217,6 +217,14 @@ def _remains(of: Judged, before: Candidate, after: Candidate, wrong: Array | flo
         if grew / problem.slow_noise > cost and np.any(off > HALF * slow):
             return 0.0
     return remains(had, has, problem.noise**2, problem.slow_noise)
+
+
+def _fewer(hypothesis: Hypothesis, names: Sequence[str]) -> Hypothesis:
+    """Its effects of these names alone, its numbers what they are."""
+    for index in reversed(range(len(hypothesis.terms))):
+        if hypothesis.names[index] not in names:
+            hypothesis = hypothesis.without(index)
+    return hypothesis
 
 
 def _roundings(done: Candidates, weight: float) -> list[Named]:
