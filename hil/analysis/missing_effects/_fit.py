@@ -127,9 +127,7 @@ def fit(
     hypothesis = point.hypothesis
     coordinates = [one for one in problem.coordinates(hypothesis) if one.term >= 0 or one.name not in held]
     round_ = _Round(problem, hypothesis, point.starts, coordinates)
-    abrupt = any(EFFECTS[use.id].abrupt for use in hypothesis.terms)
-    differences = _ABRUPT if abrupt else (1.0,)
-    found = least_squares(round_, *bounds_of(coordinates, 1.0), evaluations, differences)
+    found = least_squares(round_, *bounds_of(coordinates, 1.0), evaluations, _differences(hypothesis))
     hypothesis = hypothesis.moved(coordinates, found)
     return point_at(problem, hypothesis, _better_starts(problem, hypothesis, point.starts, round_.directions))
 
@@ -180,15 +178,24 @@ def least_squares(
 
 
 def linearised(problem: Problem, point: Point, *, free: bool = True) -> Linearised:
-    """Errors and their derivatives at a point; where numbers are not `free`, by starts alone."""
+    """Errors and their derivatives at a point; where numbers are not `free`, by starts alone.
+
+    Beside an abrupt effect over the widest differences: jumps of the misfit would pass for knowledge.
+    """
     coordinates = problem.coordinates(point.hypothesis) if free else []
     round_ = _Round(problem, point.hypothesis, point.starts, coordinates)
     zero = np.zeros(len(coordinates))
-    left, slopes = round_.residual(zero), round_.jacobian(zero)
+    left, slopes = round_.residual(zero), round_.jacobian(zero, _differences(point.hypothesis)[0])
     covariance: Array = np.asarray(np.linalg.pinv(slopes.T @ slopes, hermitian=True), dtype=float)
     if coordinates:
         slopes[-len(coordinates) :] = problem.prior_chords(coordinates, zero)
     return Linearised(point, tuple(coordinates), left, slopes, covariance, tuple(round_.bases))
+
+
+def _differences(hypothesis: Hypothesis) -> tuple[float, ...]:
+    """Times the usual ones, by which slopes are taken, widest first."""
+    abrupt = any(EFFECTS[use.id].abrupt for use in hypothesis.terms)
+    return _ABRUPT if abrupt else (1.0,)
 
 
 def left_to_gain(at: Linearised) -> float:
