@@ -136,6 +136,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=11, help="of the blind set")
     parser.add_argument("--new", action="store_true", help="only the one that is to follow")
     options = parser.parse_intermixed_args(arguments)
+    unknown = [name for name in options.names if options.group == "real" and name not in DATA_SETS]
+    if unknown:
+        parser.error(f"no data set {unknown[0]}; there are {', '.join(DATA_SETS)} (--data: where they are)")
     ways = {"old": _old, "new": _new}
     if options.new:
         del ways["old"]
