@@ -19,7 +19,6 @@ import numpy.typing as npt
 from hil.analysis.missing_effects._hypothesis import Coordinate, Hypothesis
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._spectrum import Powers
-from hil.core.effects import EFFECTS
 from hil.core.model import Model
 
 Array = npt.NDArray[np.float64]
@@ -194,8 +193,7 @@ def linearised(problem: Problem, point: Point, *, free: bool = True) -> Linearis
 
 def _differences(hypothesis: Hypothesis) -> tuple[float, ...]:
     """Times the usual ones, by which slopes are taken, widest first."""
-    abrupt = any(EFFECTS[use.id].abrupt for use in hypothesis.terms)
-    return _ABRUPT if abrupt else (1.0,)
+    return _ABRUPT if hypothesis.is_abrupt else (1.0,)
 
 
 def left_to_gain(at: Linearised) -> float:

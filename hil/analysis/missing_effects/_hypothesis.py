@@ -114,6 +114,11 @@ class Hypothesis:
         return self.with_values(index, {optional: default}, self.opened[index] - {optional})
 
     @property
+    def is_abrupt(self) -> bool:
+        """Whether an effect makes the misfit jump with every number, as the contact of a play does."""
+        return any(EFFECTS[use.id].abrupt for use in self.terms)
+
+    @property
     def kind(self) -> str:
         """Kind of the model, its effects included."""
         return kind_of(self.base.kind, self.terms)

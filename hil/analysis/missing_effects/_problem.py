@@ -90,7 +90,9 @@ class Problem:
     def simulated(
         self, index: int, packed: Sequence[tuple[Array, Array]], starts: Array, *, keep: bool = True
     ) -> Array:
-        """Channels of a recording by several models: sets x blocks x 3; NaN where one runs away.
+        """Channels of a recording by several models: sets x blocks x 3.
+
+        One that runs away is far off, not missing: it would be the likeliest of all.
 
         Args:
             keep: whether the same may be asked for again. What comes back is not to be written to.
@@ -104,9 +106,10 @@ class Problem:
         ]
 
         def simulate(some: npt.NDArray[np.int64]) -> Array:
-            return simulate_many(
+            shown = simulate_many(
                 slots[some], one.torque, one.dt, begins[some], sensors[some], one.block, angles, one.load
             )
+            return _bounded(shown)
 
         return self.shown.outputs(keys, simulate, (one, angles), keep=keep)
 
@@ -119,17 +122,9 @@ class Problem:
         return np.asarray(shown[0])
 
     def errors(self, hypothesis: Hypothesis, starts: Sequence[Array]) -> list[Array]:
-        """Measured less simulated of each recording, blocks x 3; NaN where a channel was not recorded.
-
-        What runs away is far off, not missing: it would be the likeliest of all.
-        """
+        """Measured less simulated of each recording, blocks x 3; NaN where a channel was not recorded."""
         packed = [hypothesis.packed()]
-
-        def error(index: int) -> Array:
-            shown = self.simulated(index, packed, starts[index][None])[0]
-            return np.asarray(self.series[index].measured - _bounded(shown))
-
-        return self.each(error)
+        return self.each(lambda i: self.series[i].measured - self.simulated(i, packed, starts[i][None])[0])
 
     def weighed(self, index: int, values: Array) -> Array:
         """sets x blocks x 3 as weighed transforms, sets x numbers: half the squares add to -log L.
@@ -187,7 +182,6 @@ class Problem:
 
         def slopes(index: int) -> Array:
             shown = self.simulated(index, packed, np.repeat(starts[index][None], len(points), axis=0))
-            shown = _bounded(shown)
             changes = self.weighed(index, shown[0] - shown[1:])
             changes /= steps[:, None]
             return changes.T

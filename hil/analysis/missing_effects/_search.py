@@ -70,11 +70,10 @@ def _without_chance(done: Candidates, grown: Candidate) -> Candidate:
     Beside an abrupt effect the misfit jumps with every number, and a name that takes nothing off may lead a
     fit over a jump.
     """
-    *before, _ = grown.point.hypothesis.terms
-    if not any(EFFECTS[use.id].abrupt for use in before):
+    before = grown.point.hypothesis.without(len(grown.names) - 1)
+    if not before.is_abrupt:
         return grown
-    fewer = done.fitted(grown.point.hypothesis.without(len(before)), grown)
-    return max(grown, fewer, key=done.score)
+    return max(grown, done.fitted(before, grown), key=done.score)
 
 
 def _with_better_angles(done: Candidates, best: Candidate) -> Candidate:
@@ -169,7 +168,7 @@ def _best_of(
 
 def _out_of_minima(done: Candidates, best: Candidate) -> Candidate:
     """A hypothesis with an abrupt effect, fitted again from where another minimum promises more."""
-    if not any(EFFECTS[use.id].abrupt for use in best.point.hypothesis.terms):
+    if not best.point.hypothesis.is_abrupt:
         return best
     reaches = list(_REACHES)
     while reaches:
@@ -238,7 +237,7 @@ def _as_elsewhere(done: Candidates, best: Candidate, label: str) -> list[Hypothe
     A play that is fitted alone makes up for what else is missing, and what joins it for what that spoiled.
     """
     elsewhere = max((one for one in done.found.values() if label in one.names), key=done.score, default=None)
-    if elsewhere is None or not any(EFFECTS[use.id].abrupt for use in best.point.hypothesis.terms):
+    if elsewhere is None or not best.point.hypothesis.is_abrupt:
         return []
     mine, other = best.point.hypothesis, elsewhere.point.hypothesis
     at = other.names.index(label)
@@ -295,10 +294,8 @@ def _opened_of(done: Candidates, best: Candidate, index: int, show: Callable[[st
         first = EFFECTS[use.id].parameters[0]
         size = _BESIDE * abs(float(use.values[first.name])) if parameter.unit == first.unit else 0.0
         set_already = float(use.values[parameter.name])
-        aside, far = (
-            [set_already * factor for factor in factors if set_already != parameter.default]
-            for factors in (_ASIDE, _FAR)
-        )
+        moved = set_already if set_already != parameter.default else 0.0
+        aside, far = [moved * factor for factor in _ASIDE], [moved * factor for factor in _FAR]
         wider = [
             hypothesis.with_values(index, {parameter.name: value}, opened | {parameter.name})
             for value in (*parameter.opens, size, -size, *aside, *far)

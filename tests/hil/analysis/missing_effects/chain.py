@@ -24,22 +24,26 @@ NUMBERS = {
 }
 
 
-def chirp_problem(factor: float, *effects: EffectUse) -> Problem:
-    """A chirp of a chain with effects; a base whose inertias and stiffness are off by a factor."""
+def chirp(noise: float, *effects: EffectUse) -> Recording:
+    """A chirp of a chain with effects, each channel with so much noise of its standard deviation."""
     time = np.arange(20_000, dtype=np.float64) * 1e-3
     torque = 40.0 * np.sin(2.0 * np.pi * (0.5 * time + 0.7 * time**2))
     channels = simulate(Model("two_inertia", NUMBERS, effects=effects), torque, 1e-3)
     rng = np.random.default_rng(0)
     shown = {
-        name: np.asarray(v + 0.005 * np.std(v) * rng.normal(size=len(v)), dtype=np.float64)
+        name: np.asarray(v + noise * np.std(v) * rng.normal(size=len(v)), dtype=np.float64)
         for name, v in channels.items()
     }
-    whole = {"time_s": time, "motor_torque_ref_nm": torque} | shown
+    return Recording({"time_s": time, "motor_torque_ref_nm": torque} | shown, Path("chirp.csv"))
+
+
+def chirp_problem(factor: float, *effects: EffectUse) -> Problem:
+    """A chirp of a chain with effects; a base whose inertias and stiffness are off by a factor."""
     far = {
         name: value * (factor if name.endswith(("inertia", "stiffness")) else 1.0)
         for name, value in NUMBERS.items()
     }
     model = Model("two_inertia", far)
-    series = series_of(model, [Recording(whole, Path("chirp.csv"))])
-    noise = proven_noise(series, {})
-    return problem_of(model, series, noise, white(noise, series[0].rate_hz))
+    series = series_of(model, [chirp(0.005, *effects)])
+    levels = proven_noise(series, {})
+    return problem_of(model, series, levels, white(levels, series[0].rate_hz))

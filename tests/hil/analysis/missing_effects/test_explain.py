@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -11,7 +9,7 @@ from hil.analysis.missing_effects import Outcome, explain_gap
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
-from hil.plant import simulate
+from tests.hil.analysis.missing_effects.chain import NUMBERS, chirp
 from tests.hil.analysis.missing_effects.turning_mass import base, recording
 
 pytestmark = pytest.mark.slow
@@ -73,25 +71,8 @@ def test_a_right_base_with_rounded_readings_has_rounding_alone() -> None:
 
 
 def test_a_late_torque_and_outputs_that_are_late_alike_are_one_class() -> None:
-    numbers = {
-        "motor_inertia": 0.02,
-        "gear_ratio": 8.0,
-        "shaft_stiffness": 6000.0,
-        "shaft_damping": 20.0,
-        "vehicle_inertia": 200.0,
-        "torque_delay": 0.004,
-    }
-    hidden = EffectUse("actuator_lag", {"time_constant_s": 0.008})
-    time = np.arange(20_000, dtype=np.float64) * 1e-3
-    torque = 40.0 * np.sin(2.0 * np.pi * (0.5 * time + 0.7 * time**2))
-    channels = simulate(Model("two_inertia", numbers, effects=(hidden,)), torque, 1e-3)
-    rng = np.random.default_rng(0)
-    shown = {
-        name: np.asarray(v + 0.01 * np.std(v) * rng.normal(size=len(v)), dtype=np.float64)
-        for name, v in channels.items()
-    }
-    whole = Recording({"time_s": time, "motor_torque_ref_nm": torque} | shown, Path("late.csv"))
-    found = explain_gap(Model("two_inertia", numbers), [whole])
+    late = chirp(0.01, EffectUse("actuator_lag", {"time_constant_s": 0.008}))
+    found = explain_gap(Model("two_inertia", NUMBERS), [late])
     named = next(one for one in found.effects if one.id == "actuator_lag")
     assert any(name.count("sensor_lag") == 3 for name in named.alike)
     assert named.use.values["time_constant_s"] == pytest.approx(0.008, rel=0.05)

@@ -12,7 +12,6 @@ from hil.core.model import EffectUse
 from tests.hil.analysis.missing_effects.chain import NUMBERS, chirp_problem
 
 
-@pytest.mark.filterwarnings("ignore:(overflow|invalid value):RuntimeWarning")
 def test_what_runs_away_is_far_off_and_not_the_likeliest_of_all() -> None:
     problem = chirp_problem(1.0)
     right = Hypothesis(problem.model, dict(NUMBERS))
