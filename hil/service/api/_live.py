@@ -17,7 +17,7 @@ from hil.core.result import CriterionResult
 from hil.service.api._access import TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError
-from hil.service.live.live import BUCKET_S, Spectrum, Stretch
+from hil.service.live.live import BUCKET_S, MOST_BUCKETS, Spectrum, Stretch
 from hil.service.live.live_hub import LiveView
 from hil.service.service import Service
 from hil.service.store import in_turns
@@ -84,7 +84,7 @@ class _Watching:
         try:
             while not self._service.closing:
                 woken.clear()
-                news = await in_turns(self._gathered())
+                news = "".join(await in_turns(self._news()))
                 yield news or _event("here", {})
                 await asyncio.sleep(_SHORTEST_S)
                 try:
@@ -95,18 +95,15 @@ class _Watching:
             viewers.pop(woken, None)
             self._service.changed(self._bench)
 
-    async def _gathered(self) -> str:
-        return "".join(self._news())
-
-    def _news(self) -> list[str]:
-        service, bench = self._service, self._bench
+    async def _news(self) -> list[str]:
+        service, bench, hub = self._service, self._bench, self._service.live_hub
         news = []
-        if service.live_hub.version(bench) != self._version:
-            self._version = service.live_hub.version(bench)
-            news.append(
-                self._cache.text("state", self._version, lambda: _event("state", _state(service, bench)))
+        if hub.version(bench) != self._version:
+            self._version, state = await self._cache.state(
+                lambda: hub.version(bench), lambda: _event("state", _state(service, bench))
             )
-        shown = service.live_hub.run_of(bench)
+            news.append(state)
+        shown = hub.run_of(bench)
         if shown is not None:
             news += self._of_run(shown)
         return news
@@ -130,15 +127,18 @@ class _Watching:
 
     def _samples(self, shown: LiveView, first: int) -> str:
         """The channels chosen; of a stretch that is long, as of who has just come, in wider buckets."""
-        stretch = shown.live.buckets.since(first)
-        if stretch is None:
-            return ""
-        names = [name for name in self._channels if name in stretch.names]
-        if len(stretch.lowest) == self._next_bucket - stretch.first:
-            texts = [shown.texts.of(name, stretch.first, self._next_bucket) for name in names]
+        buckets = shown.live.buckets
+        names = [name for name in self._channels if name in buckets.names]
+        if self._next_bucket - first <= MOST_BUCKETS:
+            first, width_s = max(first, buckets.oldest), BUCKET_S
+            texts = [shown.texts.of(name, first, self._next_bucket) for name in names]
         else:
+            stretch = buckets.since(first)
+            if stretch is None:
+                return ""
+            first, width_s = stretch.first, stretch.width_s
             texts = [_channel(stretch, name) for name in names]
-        begin = f'"run":{shown.run},"start_s":{stretch.start_s:.3f},"width_s":{stretch.width_s:.3f}'
+        begin = f'"run":{shown.run},"start_s":{first * BUCKET_S:.3f},"width_s":{width_s:.3f}'
         return f'event: samples\ndata: {{{begin},"channels":{{{",".join(texts)}}}}}\n\n'
 
     def _spectrum(self, shown: LiveView) -> str:

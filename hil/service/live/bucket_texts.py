@@ -16,9 +16,18 @@ class BucketTexts:
     def __init__(self, buckets: Buckets) -> None:
         self._buckets = buckets
         self._texts: dict[int, dict[str, tuple[str, str]]] = {}
+        self._joined: dict[tuple[str, int], str] = {}  # from a bucket to the last
+        self._last = -1
 
     def of(self, channel: str, first: int, last: int) -> str:
         """`"channel":{"lowest":[…],"highest":[…]}` of the buckets from one number to another, left out."""
+        if last != self._last:
+            self._last, self._joined = last, {}
+        if (channel, first) not in self._joined:
+            self._joined[channel, first] = self._join(channel, first, last)
+        return self._joined[channel, first]
+
+    def _join(self, channel: str, first: int, last: int) -> str:
         if len(self._texts) > _MOST:
             self._texts = {n: known for n, known in self._texts.items() if n >= self._buckets.oldest}
         pairs = [self._pair(channel, number) for number in range(first, last)]

@@ -31,6 +31,8 @@ class BroadcastCache:
 
     def __init__(self) -> None:
         self._newest: dict[str, tuple[object, str]] = {}
+        self._state: tuple[int, str] = (-1, "")
+        self._making = asyncio.Lock()
 
     def text(self, kind: str, of: Hashable, make: Callable[[], str]) -> str:
         """What was stated of it, or what `make` says."""
@@ -39,6 +41,13 @@ class BroadcastCache:
             text = make()
             self._newest[kind] = of, text
         return text
+
+    async def state(self, version: Callable[[], int], make: Callable[[], str]) -> tuple[int, str]:
+        """The newest state and its version; it reads the store, so whoever comes meanwhile waits for it."""
+        async with self._making:
+            if (now := version()) != self._state[0]:
+                self._state = now, make()
+            return self._state
 
 
 _LOOK_S = 0.05  # a viewer is sent as many updates
