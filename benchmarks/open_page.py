@@ -2,17 +2,22 @@
 
 `python -m benchmarks.open_page [RUNS]` (300): two tabs of a headless Chromium, the bench and the list of
 runs, stay open while runs of 60 s on the simulated bench follow each other, as fast as it computes them:
-300 of them are what a bench does in a day. Each look is taken after a garbage collection. Asked: memory is
-flat.
+300 of them are what a bench does in a day. Each look is a snapshot of the heap after a garbage collection.
+`data` is what the page keeps: objects, arrays, strings, numbers and functions. Apart from it stand the
+browser's compiled code, which grows while it warms up, and what its debugger's network log keeps of every
+answer, as only a benchmark has. Asked: memory is flat.
 """
 
 from __future__ import annotations
 
+import json
 import shutil
 import sys
 import tempfile
 import time
+from collections import Counter
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from playwright import sync_api as playwright
@@ -22,6 +27,7 @@ from tests.hil.service.served import Served, served
 
 RUNS, LOOKS = 300, 10
 _FIRST = 0.2  # of the runs: until then caches fill
+_LOOKED_AT = ("data", "code", "nodes", "listeners")
 PLAN = """
 name: minute
 steps:
@@ -33,7 +39,8 @@ finally:
 criteria:
   - {segment: s, metric: peak_shaft_torque, upper: 400, unit: N m}
 """
-_SEEN = ("JSHeapUsedSize", "Nodes", "JSEventListeners")
+_DATA = ("object", "array", "string", "concatenated string", "sliced string", "number", "closure", "regexp")
+_COUNTED = ("Nodes", "JSEventListeners")
 
 
 def main(runs: int = RUNS) -> int:
@@ -53,7 +60,9 @@ def _watched(service: Served, tabs: list[playwright.Page], runs: int) -> int:
     asked = [tab.context.new_cdp_session(tab) for tab in tabs]
     for one in asked:
         one.send("Performance.enable")
-    print(f"{runs} runs of 60 s; bench page and list of runs: heap MB, nodes, listeners; service: MB")
+    print(
+        f"{runs} runs of 60 s; bench page and list of runs: data MB, code MB, nodes, listeners; service: MB"
+    )
     rows = []
     began_s = time.monotonic()
     for number in range(1, runs + 1):
@@ -63,18 +72,13 @@ def _watched(service: Served, tabs: list[playwright.Page], runs: int) -> int:
                 (float(number), *[value for one in asked for value in _look(one)], _service_mb(service))
             )
             heaps = "   ".join(
-                f"{rows[-1][at]:6.2f} {rows[-1][at + 1]:6.0f} {rows[-1][at + 2]:5.0f}" for at in (1, 4)
+                "{:6.3f} {:6.2f} {:6.0f} {:5.0f}".format(*rows[-1][at : at + 4]) for at in (1, 5)
             )
             print(f"{number:4} runs   {heaps}   {rows[-1][-1]:6.0f}", flush=True)
     print(f"{(time.monotonic() - began_s) / 60:.1f} min")
     later = np.array([row for row in rows if row[0] >= _FIRST * runs])
     names = (
-        "heap of the bench page",
-        "nodes",
-        "listeners",
-        "heap of the list",
-        "nodes",
-        "listeners",
+        *(f"{what} of the {page}" for page in ("bench page", "list") for what in _LOOKED_AT),
         "service",
     )
     for at, name in enumerate(names, 1):
@@ -84,10 +88,29 @@ def _watched(service: Served, tabs: list[playwright.Page], runs: int) -> int:
 
 
 def _look(session: playwright.CDPSession) -> list[float]:
+    """What `_LOOKED_AT` names, of a tab."""
     for _ in range(2):
         session.send("HeapProfiler.collectGarbage")
+    sizes = _heap(session)
     seen = {one["name"]: float(one["value"]) for one in session.send("Performance.getMetrics")["metrics"]}
-    return [seen[_SEEN[0]] / 1e6, *(seen[name] for name in _SEEN[1:])]
+    return [sum(sizes[kind] for kind in _DATA), sizes["code"], *(seen[name] for name in _COUNTED)]
+
+
+def _heap(session: playwright.CDPSession) -> Counter[str]:
+    """Size of what is in a tab's heap by its kind, MB."""
+    parts: list[str] = []
+
+    def take(event: dict[str, Any]) -> None:
+        parts.append(event["chunk"])
+
+    session.on("HeapProfiler.addHeapSnapshotChunk", take)
+    session.send("HeapProfiler.takeHeapSnapshot", {"reportProgress": False})
+    session.remove_listener("HeapProfiler.addHeapSnapshotChunk", take)
+    found = json.loads("".join(parts))
+    fields, kinds = (found["snapshot"]["meta"][name] for name in ("node_fields", "node_types"))
+    nodes = np.array(found["nodes"]).reshape(-1, len(fields))
+    sizes = np.bincount(nodes[:, fields.index("type")], nodes[:, fields.index("self_size")])
+    return Counter({kind: float(size) / 1e6 for kind, size in zip(kinds[0], sizes, strict=False)})
 
 
 def _service_mb(service: Served) -> float:
