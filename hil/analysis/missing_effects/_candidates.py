@@ -64,9 +64,13 @@ class Candidates:
         turned = turned_with(self.problem, best.point)
         self.problem = turned.weighed_by(powers.spectrum(self.problem.noise))
 
-    def weighed_as(self, candidate: Candidate) -> Problem:
-        """The problem, errors weighed by the spectrum that a candidate leaves itself."""
-        powers = candidate.point.powers(self.problem)
+    def weighed_as(self, candidate: Candidate, *, once: bool = False) -> Problem:
+        """The problem, errors weighed by the spectrum that a candidate leaves itself.
+
+        Args:
+            once: what a torque that repeats itself shows again and again counts once, as in odds and errors.
+        """
+        powers = self.problem.powers(candidate.point.errors, once=once)
         return self.problem.weighed_by(powers.spectrum(self.problem.noise))
 
     def promised(self, candidate: Candidate) -> float:

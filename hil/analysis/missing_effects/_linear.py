@@ -88,10 +88,25 @@ class Responses:
         return float(np.sum(weight * np.minimum(np.nan_to_num(away, nan=_FAR), _FAR) ** 2) / np.sum(weight))
 
     def fitted(self, hypothesis: Hypothesis, rounds: int = ROUNDS) -> Hypothesis:
-        """Numbers that suit the responses best, from those of a hypothesis."""
+        """Numbers that suit responses and prior best, from those of a hypothesis.
+
+        Where most numbers of a base are off, each alone is held where the base has it: so the way is gone
+        without the prior as well (but for a gear ratio: teeth were counted), and from its end with it.
+        """
+        held = self._descended(hypothesis, rounds)
+        freed = self._descended(self._descended(hypothesis, rounds, prior=False), rounds)
+        return max((held, freed), key=self.posterior)
+
+    def posterior(self, hypothesis: Hypothesis) -> float:
+        """Log likelihood of the responses and log density of the base's numbers."""
+        coordinates = self.problem.coordinates(hypothesis)
+        prior = self.problem.prior(coordinates, np.zeros(len(coordinates)))
+        return self.log_likelihood(hypothesis) - 0.5 * float(np.sum(prior**2))
+
+    def _descended(self, hypothesis: Hypothesis, rounds: int, *, prior: bool = True) -> Hypothesis:
         best, reached = hypothesis, self.log_likelihood(hypothesis)
         for _ in range(rounds):
-            descent = _Descent(self, hypothesis)
+            descent = _Descent(self, hypothesis, prior=prior)
             hypothesis = hypothesis.moved(
                 descent.coordinates,
                 least_squares(descent, *bounds_of(descent.coordinates), _EVALUATIONS),
@@ -106,9 +121,10 @@ class Responses:
 class _Descent:
     """Residual and derivatives of a round, weighed by what the hypothesis leaves at its beginning."""
 
-    def __init__(self, responses: Responses, hypothesis: Hypothesis) -> None:
+    def __init__(self, responses: Responses, hypothesis: Hypothesis, *, prior: bool) -> None:
         self.responses, self.hypothesis = responses, hypothesis
         self.coordinates: Sequence[Coordinate] = responses.problem.coordinates(hypothesis)
+        self.prior = np.array([prior or one.name == "gear_ratio" for one in self.coordinates])
         spectrum = responses.powers(hypothesis).spectrum(responses.problem.noise)
         band = bands_of(spectrum.edges_hz, responses.frequency_hz)
         power = responses.windows * responses.input_power[:, None] / spectrum.variance.T[band]
@@ -118,7 +134,8 @@ class _Descent:
         """Weighed misfit of the responses, then the prior's."""
         hypothesis = self.hypothesis.moved(self.coordinates, u)
         error = self.weight * np.nan_to_num(self.responses.response(hypothesis) - self.responses.found)
-        return np.concatenate([error.ravel().view(float), self.responses.problem.prior(self.coordinates, u)])
+        prior = self.prior * self.responses.problem.prior(self.coordinates, u)
+        return np.concatenate([error.ravel().view(float), prior])
 
     def jacobian(self, u: Array, wider: float = 1.0) -> Array:
         """Of the residual, by finite differences."""
@@ -183,22 +200,22 @@ def structures(problem: Problem) -> list[Hypothesis]:
         return []
     base = Hypothesis(problem.model, dict(problem.model.parameters))
     near = responses.fitted(base)
-    alone = max((near, _best(responses, _scattered(responses, [base]))), key=responses.log_likelihood)
+    alone = max((near, _best(responses, _scattered(responses, [base]))), key=responses.posterior)
     found = [(0.0, alone)]
     if responses.most() - responses.log_likelihood(alone) < ALIKE:
         return [alone]
     for effect in EFFECTS.values():
         if effect.law.chain is None or not may_join(effect, alone):
             continue
-        scene = Scene(problem, alone)
         starts = [
-            alone.with_term(EffectUse(effect.id, dict(one.values)))
-            for probe in probes_of(effect, scene)
+            numbers.with_term(EffectUse(effect.id, dict(one.values)))
+            for numbers in (alone, base)
+            for probe in probes_of(effect, Scene(problem, numbers))
             for one in probe.directions
         ]
         best = _best(responses, _scattered(responses, starts))
         cost = 0.5 * np.log(responses.powers(best).values(problem.noise)) * (len(best.terms[0].values) + 1)
-        gain = responses.log_likelihood(best) - responses.log_likelihood(alone) - cost
+        gain = responses.posterior(best) - responses.posterior(alone) - cost
         if gain > 0.0:
             found.append((gain, best))
     return [alone, *(one for _, one in sorted(found[1:], key=lambda pair: -pair[0]))]
@@ -207,7 +224,7 @@ def structures(problem: Problem) -> list[Hypothesis]:
 def _best(responses: Responses, starts: Sequence[Hypothesis]) -> Hypothesis:
     """The likeliest of the few starts whose responses are nearest."""
     nearest = sorted(starts, key=responses.misfit)[:_STARTS]
-    return max((responses.fitted(one) for one in nearest), key=responses.log_likelihood)
+    return max((responses.fitted(one) for one in nearest), key=responses.posterior)
 
 
 def _scattered(responses: Responses, starts: Sequence[Hypothesis]) -> list[Hypothesis]:

@@ -52,10 +52,12 @@ class Candidate:
         return float(np.sum(self.windows))
 
     def score(self, values: float) -> float:
-        """Log likelihood less what its size costs where the data hold so many independent values."""
-        names = len(self.names)
-        cost = 0.5 * self.free * log(max(values, 2.0)) + log(comb(self.known, names))
-        return self.log_likelihood + self.prior - self.places - cost
+        """Log likelihood, with its prior, less what its size costs."""
+        return self.log_likelihood + self.prior - self.cost(values)
+
+    def cost(self, values: float) -> float:
+        """What its size costs where the data hold so many independent values."""
+        return 0.5 * self.free * log(max(values, 2.0)) + log(comb(self.known, len(self.names))) + self.places
 
 
 def remains(had: Array, has: Array, noise: Array, slow: float) -> float:
@@ -82,9 +84,12 @@ def remains(had: Array, has: Array, noise: Array, slow: float) -> float:
     return float(min(np.sum(np.maximum(weight, 0.0) * share) / np.sum(np.maximum(weight, 0.0)), 1.0))
 
 
-def weights_of(candidates: Sequence[Candidate], values: float) -> Array:
-    """Posterior weight of each candidate, (candidates,), where the data hold so many independent values."""
-    windows = np.stack([one.windows for one in candidates])
+def weights_of(candidates: Sequence[Candidate], windows: Array, values: float) -> Array:
+    """Posterior weight of each candidate, (candidates,), where the data hold so many independent values.
+
+    Args:
+        windows: log likelihoods, candidates x windows, in which what is shown again and again counts once.
+    """
     penalties = np.array([one.log_likelihood - one.score(values) for one in candidates])
     count = windows.shape[1]
     draws = np.random.default_rng(0).exponential(size=(_DRAWS, count))

@@ -70,9 +70,15 @@ class Problem:
         there = np.isfinite(square)
         return bool(np.all(square[there] <= self.slow_noise * self.noise[there] ** 2))
 
-    def powers(self, errors: Sequence[Array]) -> Powers:
-        """Of errors of each recording, where they count."""
-        return powers_of(errors, self.rate_hz, self.signal, [one.lowest_hz for one in self.series])
+    def powers(self, errors: Sequence[Array], *, once: bool = False) -> Powers:
+        """Of errors of each recording, where they count.
+
+        Args:
+            once: what a torque that repeats itself shows again and again counts once.
+        """
+        lowest = [one.lowest_hz for one in self.series]
+        periods = [one.periods if once else 1.0 for one in self.series]
+        return powers_of(errors, self.rate_hz, self.signal, lowest, periods)
 
     def mean_square(self, errors: Sequence[Array]) -> Array:
         """Of each channel over all that counts of the recordings, (3,); NaN where it was not recorded."""

@@ -121,12 +121,26 @@ def _grown(
     rarer = [one for one in suggested if not is_loss(one[0].terms[-1])]
     grown = _best_of(done, best, losses, show)
     if grown is not None and done.score(grown) > done.score(best):
+        grown = _paired(done, grown, show)
         had, has = (done.problem.mean_square(one.point.errors) for one in (best, grown))
         if remains(had, has, done.problem.noise**2, 1.0) <= HALF:
             brought = HALF * (grown.log_likelihood - best.log_likelihood)
             rarer = [one for one in rarer if brought < one[1] < math.inf]
     others = _best_of(done, best, rarer, show)
     return max((one for one in (grown, others) if one is not None), key=done.score, default=None)
+
+
+def _paired(done: Candidates, grown: Candidate, show: Callable[[str], None]) -> Candidate:
+    """The first loss with another one beside it, where both are the likelier: dry and viscous go together."""
+    if len(grown.names) > 1 or not done.may_gain(grown):
+        return grown
+    pairs = [grown]
+    for one in [one for one in done.found.values() if len(one.names) == 1 and one.names != grown.names]:
+        other, opened = one.point.hypothesis.terms[0], one.point.hypothesis.opened[0]
+        if is_loss(other):
+            show(" + ".join([*grown.names, *one.names]))
+            pairs.append(done.fitted(grown.point.hypothesis.with_term(other, opened), grown))
+    return max(pairs, key=done.score)
 
 
 def is_loss(use: EffectUse) -> bool:

@@ -60,13 +60,19 @@ class Series:
         return 1.0 / (self.dt * self.block)
 
     @cached_property
+    def periods(self) -> float:
+        """How many periods of a torque that repeats itself there are; one of any other."""
+        period = period_samples(self.torque)
+        return 1.0 if period is None else len(self.torque) / period
+
+    @cached_property
     def lowest_hz(self) -> float:
         """Upper edge of the last octave below all that a periodic torque excites: from there errors count.
 
         What is not excited decides nothing: below the lines of a multisine stands what drifts. Zero where a
         torque does not repeat itself.
         """
-        if period_samples(self.torque) is None:
+        if self.periods == 1.0:
             return 0.0
         count = len(self.measured)
         torque = self.torque[: count * self.block].reshape(count, self.block).mean(axis=1)[:, None]

@@ -9,6 +9,9 @@ model. So n values count near the noise and one far from it, and nothing counts 
     dlog L = -(1 + (n - 1) N/P) dP / (P + δ²),  from log L = 0 at P = N, hence
     log L = -log((P + δ²)/(N + δ²)) - (n - 1) N/δ² (log(1 + δ²/N) - log(1 + δ²/P)).
 
+A torque that repeats itself shows the same discrepancy in every period (R. Pintelon, J. Schoukens, System
+Identification (2012), ch. 4), so that bins of an octave of all periods rise and fall together.
+
 So misfit counts with its own correlation: a name that ends in noise has odds as sharp as noise allows, two
 names far from it have modest ones, and no hypothesis gets a discrepancy for nothing (M. Kennedy, A. O'Hagan,
 J. R. Statist. Soc. B 63 (2001) 425; J. Brynjarsdóttir, A. O'Hagan, Inverse Problems 30 (2014) 114007; a power
@@ -122,13 +125,15 @@ class Powers:
     """Mean power of errors by window, channel and band, and how many independent bins it is of.
 
     `power` and `bins` are windows x 3 x bands; a channel that is missing has no bins. `signal` is
-    the mean square of each channel (3,).
+    the mean square of each channel (3,), `repeated` (windows,) how many windows show the same discrepancy
+    (of a torque that repeats itself), None where each shows its own.
     """
 
     edges_hz: Array
     power: Array
     bins: Array
     signal: Array
+    repeated: Array | None = None
 
     def spectrum(self, noise: Array) -> Spectrum:
         """The scale of noise and discrepancy that suits these errors best."""
@@ -171,12 +176,15 @@ class Powers:
         return np.where(count > 0.0, sums / np.maximum(count, 1e-300), np.nan)
 
     def _terms(self, noise: Array) -> tuple[Array, Array, Array, Array]:
-        """Mean power, at least that of noise; noise; what no model is right to; bins of a window."""
+        """Mean power, at least that of noise; noise; what no model is right to; bins of one discrepancy."""
         total = np.sum(self.bins, axis=0)
         n = np.where(np.isfinite(noise), noise, 1.0)[:, None] ** 2 * np.ones_like(total)
         p = np.maximum(np.sum(self.bins * self.power, axis=0) / np.maximum(total, 1e-300), n)
         d = np.where(self.signal > 0.0, RIGHT_TO**2 * self.signal, 1.0)[:, None] * np.ones_like(total)
-        return p, n, d, np.maximum(np.max(self.bins, axis=(0, 1)) / _LAPPED, 1.0)
+        inside = np.maximum(np.max(self.bins, axis=(0, 1)) / _LAPPED, 1.0) * np.ones_like(total)
+        if self.repeated is not None:
+            inside *= total / np.maximum(np.sum(self.bins / self.repeated[:, None, None], axis=0), 1e-300)
+        return p, n, d, np.maximum(inside, 1.0)
 
 
 def transformed(
@@ -218,25 +226,33 @@ def _unseen(blocks: int, rate_hz: float) -> Array:
 
 
 def powers_of(
-    errors: Sequence[Array], rate_hz: float, signal: Array, lowest_hz: Sequence[float] | None = None
+    errors: Sequence[Array],
+    rate_hz: float,
+    signal: Array,
+    lowest_hz: Sequence[float] | None = None,
+    periods: Sequence[float] | None = None,
 ) -> Powers:
     """Powers of errors of each recording (blocks x 3, NaN where not recorded), by half-lapped windows.
 
     Args:
         lowest_hz: of each recording: bands below do not count; zero when left out.
+        periods: of each recording: how often its torque repeats itself; once when left out.
     """
     edges = edges_hz(rate_hz)
-    power, bins = [], []
-    for error, lowest in zip(errors, lowest_hz or [0.0] * len(errors), strict=True):
+    power, bins, repeated = [], [], []
+    each = zip(errors, lowest_hz or [0.0] * len(errors), periods or [1.0] * len(errors), strict=True)
+    for error, lowest, times in each:
         squares = np.abs(transformed(error[None], rate_hz)[0]) ** 2
         band = _bands(edges, _window_of(len(error), rate_hz), rate_hz)
         inside = np.stack([np.bincount(band, minlength=len(edges) - 1)] * error.shape[1]).astype(float)
+        windows = squares.shape[1]
+        repeated += [max(1.0, min(times, _LAPPED * windows))] * windows
         for one in squares.swapaxes(0, 1):
             sums = np.stack([np.bincount(band, column, len(edges) - 1) for column in one])
             there = np.isfinite(sums)
             power.append(np.where(there, sums / np.maximum(inside, 1.0), 0.0))
             bins.append(np.where(there & (edges[1:] > lowest), _LAPPED * inside, 0.0))
-    return Powers(edges, np.array(power), np.array(bins), signal)
+    return Powers(edges, np.array(power), np.array(bins), signal, np.array(repeated))
 
 
 def _window_of(blocks: int, rate_hz: float) -> int:

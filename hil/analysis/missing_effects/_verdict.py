@@ -60,13 +60,18 @@ class Judged:
 def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     """The outcome of a search."""
     done = of.done
-    at = linearised(done.weighed_as(done.best), done.best.point)
+    likeliest = done.best
+    if len(likeliest.names) > 1:  # a step has compared single names
+        _swapped(done, likeliest)
+    at = linearised(done.weighed_as(done.best, once=True), done.best.point)
     as_the_base = as_the_base_has(done, done.best) if _may_be_off(of, at) else frozenset[str]()
     best, at, shares = _worth_telling(of, done.best)
-    _swapped(done, best)
+    if best is not likeliest or len(best.names) == 1:
+        _swapped(done, best)
     candidates = list(done.found.values())
-    weights = weights_of(candidates, done.values)
-    rivals = _alike(done, best, candidates)
+    values = done.problem.powers(best.point.errors, once=True).values(done.problem.noise)
+    weights = _weights(done.problem, candidates, values)
+    rivals = _alike(done, best, candidates, weights, values)
     effects: list[Named] = []
     doubtful: list[Named] = []
     for index, use in enumerate(best.point.hypothesis.terms):
@@ -93,6 +98,17 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     )  # fmt: skip
 
 
+def _weights(problem: Problem, candidates: Sequence[Candidate], values: float) -> Array:
+    """Posterior weight of each candidate; what a repeated torque shows again and again counts once.
+
+    A fit may use every window of it, as a composite likelihood; odds may not (C. Varin, N. Reid, D. Firth,
+    Statistica Sinica 21 (2011) 5).
+    """
+    once = (problem.powers(one.point.errors, once=True) for one in candidates)
+    windows = np.stack([one.log_likelihood(problem.noise) for one in once])
+    return weights_of(candidates, windows, values)
+
+
 def _may_be_off(of: Judged, at: Linearised) -> bool:
     """Whether single numbers of the base may be wrong: what has no name bends them, a far base has none."""
     return of.done.problem.is_noise(at.point.errors) and not is_far(numbers_of(at, of.asked), of.done)
@@ -101,7 +117,7 @@ def _may_be_off(of: Judged, at: Linearised) -> bool:
 def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, Linearised, list[float]]:
     """Without effects that take off less than half of what stays without them; shares of the others."""
     while True:
-        at = linearised(of.done.weighed_as(best), best.point)
+        at = linearised(of.done.weighed_as(best, once=True), best.point)
         if not best.names:
             return best, at, []
         fewer = [_without(of.done, best, index) for index in range(len(best.names))]
@@ -185,7 +201,7 @@ def _named(
 ) -> Named:
     label = best.names[index]
     alike = rivals.get(label, ())
-    held = sum(float(w) for one, w in zip(candidates, weights, strict=True) if {label, *alike} & {*one.names})
+    held = _held(label, candidates, weights, *alike)
     errors = {
         name: at.standard_error(index, name)
         for name in use.values
@@ -242,16 +258,25 @@ def _roundings(done: Candidates, weight: float) -> list[Named]:
     return found
 
 
-def _alike(done: Candidates, best: Candidate, candidates: Sequence[Candidate]) -> dict[str, tuple[str, ...]]:
-    """Of each name of the best hypothesis: the names that could take its place without the data telling."""
-    problem = done.weighed_as(best)
+def _alike(
+    done: Candidates, best: Candidate, candidates: Sequence[Candidate], weights: Array, values: float
+) -> dict[str, tuple[str, ...]]:
+    """Of each name of the best hypothesis: the names that could take its place without the data telling.
+
+    What they tell of predictions that differ may be just what a number more costs: then they tell nothing,
+    nor where no name in that place has the half of the odds.
+    """
+    problem = done.weighed_as(best, once=True)
     found: dict[str, tuple[str, ...]] = {}
-    for one in candidates:
+    least = float(weights[candidates.index(best)]) * np.exp(-ALIKE)
+    held = {name: _held(name, candidates, weights) for name in best.names}
+    for one, weight in zip(candidates, weights, strict=True):
         lost, new = {*best.names} - {*one.names}, {*one.names} - {*best.names}
-        if len(lost) != 1 or len(new) != 1 or done.score(best) - done.score(one) > ALIKE:
+        if len(lost) != 1 or len(new) != 1 or weight < least:
             continue
-        if _apart(problem, best.point, one.point) < ALIKE:
-            name = lost.pop()
+        name = lost.pop()
+        more = abs(best.cost(values) - one.cost(values))
+        if held[name] < HALF or _apart(problem, best.point, one.point) - more < ALIKE:
             found[name] = (*found.get(name, ()), new.pop())
     for index, use in enumerate(best.point.hypothesis.terms):
         late = _late_outputs(done, best.point.hypothesis.without(index), use)
@@ -264,6 +289,12 @@ def _alike(done: Candidates, best: Candidate, candidates: Sequence[Candidate]) -
             names = [name for name in late.names if name not in best.names]
             found[label] = (*found.get(label, ()), " + ".join(names))
     return found
+
+
+def _held(name: str, candidates: Sequence[Candidate], weights: Array, *others: str) -> float:
+    """Weight of all candidates that have a name, or one of others."""
+    has = [not {name, *others}.isdisjoint(one.names) for one in candidates]
+    return float(np.sum(weights[np.array(has)]))
 
 
 def _apart(problem: Problem, one: Point, other: Point) -> float:

@@ -30,7 +30,7 @@ def _relaxed(motion: Motion, chain: Chain, memory: float, values: Values) -> flo
 
 def _probes(scene: Scene) -> Iterator[Probe]:
     for stiffness in (0.5, 1.0, 2.0):
-        for length in (0.05, 0.15, 0.4, 1.2):
+        for length in (0.05, 0.15, 0.4, 1.2, 4.0):
             slip = stiffness * scene.parameters["tyre_stiffness"] * length / WHEEL_RADIUS_M
             yield fixed(slip_stiffness_nm=slip, relaxation_length_m=length)
 

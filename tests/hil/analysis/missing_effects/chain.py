@@ -1,4 +1,4 @@
-"""A chirp of a two-inertia chain, and the problem of a base that is asked about it."""
+"""A chirp and a multisine of two-inertia chains, and problems of bases that are asked about them."""
 
 from __future__ import annotations
 
@@ -22,6 +22,15 @@ NUMBERS = {
     "vehicle_inertia": 200.0,
     "torque_delay": 0.004,
 }
+#: Two motors on a shaft, as on benches that identify one.
+MOTORS = {
+    "motor_inertia": 0.0048,
+    "gear_ratio": 1.0,
+    "shaft_stiffness": 553.0,
+    "shaft_damping": 0.01,
+    "vehicle_inertia": 0.0048,
+    "torque_delay": 0.0,
+}
 
 
 def chirp(noise: float, *effects: EffectUse) -> Recording:
@@ -43,7 +52,33 @@ def chirp_problem(factor: float, *effects: EffectUse) -> Problem:
         name: value * (factor if name.endswith(("inertia", "stiffness")) else 1.0)
         for name, value in NUMBERS.items()
     }
-    model = Model("two_inertia", far)
-    series = series_of(model, [chirp(0.005, *effects)])
+    return _problem(Model("two_inertia", far), chirp(0.005, *effects))
+
+
+def multisine(*effects: EffectUse) -> Recording:
+    """Speeds of two motors with effects in 14 periods of a multisine, 11 to 399 Hz, 1 % noise."""
+    rate, rng = 2500.0, np.random.default_rng(1)
+    time = np.arange(round(14 * rate)) / rate
+    lines = np.arange(11, 400)
+    phases = rng.uniform(0.0, 2.0 * np.pi, len(lines))
+    torque = np.sin(2.0 * np.pi * time[:, None] * lines + phases).sum(axis=1)
+    torque *= 3.0 / np.std(torque)
+    channels = simulate(Model("two_inertia", MOTORS, effects=effects), torque, 1.0 / rate)
+    speeds = {
+        name: np.asarray(v + 0.01 * np.std(v) * rng.normal(size=len(v)), dtype=np.float64)
+        for name, v in channels.items()
+        if name.endswith("speed_rad_s")
+    }
+    return Recording({"time_s": time, "motor_torque_ref_nm": torque} | speeds, Path("multisine.csv"))
+
+
+def multisine_problem(factor: float, *effects: EffectUse) -> Problem:
+    """A multisine of two motors with effects; a base whose inertias are off by a factor."""
+    far = {name: value * (factor if name.endswith("inertia") else 1.0) for name, value in MOTORS.items()}
+    return _problem(Model("two_inertia", far | {"shaft_stiffness": 500.0}), multisine(*effects))
+
+
+def _problem(model: Model, recording: Recording) -> Problem:
+    series = series_of(model, [recording])
     levels = proven_noise(series, {})
     return problem_of(model, series, levels, white(levels, series[0].rate_hz))

@@ -13,7 +13,7 @@ from hil.analysis.missing_effects._series import series_of
 from hil.analysis.missing_effects._spectrum import white
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
-from tests.hil.analysis.missing_effects.chain import NUMBERS, chirp_problem
+from tests.hil.analysis.missing_effects.chain import MOTORS, NUMBERS, chirp_problem, multisine_problem
 
 
 @pytest.mark.parametrize("factor", [1.0, 0.4, 2.5])
@@ -28,6 +28,18 @@ def test_a_lag_behind_a_far_base_shows_in_the_responses() -> None:
     best = structures(chirp_problem(2.5, lag))[1]
     assert best.names == ("actuator_lag",)
     assert float(best.terms[0].values["time_constant_s"]) == pytest.approx(0.008, rel=0.1)
+
+
+@pytest.mark.parametrize("factor", [0.5, 3.0])
+def test_a_base_that_is_off_as_a_whole_does_not_hold_its_numbers(factor: float) -> None:
+    """Each number alone is likeliest where the base has it; with a drag beside it a lag bent the others."""
+    lag = EffectUse("actuator_lag", {"time_constant_s": 0.0078})
+    drag = EffectUse("load_viscous_drag", {"coefficient_nms_rad": 0.1})
+    best = structures(multisine_problem(factor, lag, drag))[1]
+    assert best.names == ("actuator_lag",)
+    assert float(best.terms[0].values["time_constant_s"]) == pytest.approx(0.0078, rel=0.12)
+    for name in ("motor_inertia", "shaft_stiffness", "vehicle_inertia"):
+        assert best.numbers[name] == pytest.approx(MOTORS[name], rel=0.12)
 
 
 def test_a_rigid_model_has_no_responses_to_read() -> None:

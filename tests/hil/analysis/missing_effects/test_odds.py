@@ -18,14 +18,18 @@ def _candidate(windows: list[float]) -> Candidate:
     return Candidate(_POINT, np.array(windows), 3, 20)
 
 
+def _weights(*windows: list[float]) -> np.ndarray:
+    return weights_of([_candidate(one) for one in windows], np.array(windows), 1000.0)
+
+
 def test_windows_that_agree_give_the_odds_of_bayes() -> None:
-    weights = weights_of([_candidate([0.1] * 20), _candidate([0.0] * 20)], 1000.0)
+    weights = _weights([0.1] * 20, [0.0] * 20)
     assert weights[0] == pytest.approx(1.0 / (1.0 + np.exp(-2.0)), abs=0.01)
 
 
 def test_windows_that_disagree_make_large_differences_modest() -> None:
     better_here_worse_there = [30.0, -20.0] * 10
-    weights = weights_of([_candidate(better_here_worse_there), _candidate([0.0] * 20)], 1000.0)
+    weights = _weights(better_here_worse_there, [0.0] * 20)
     assert 0.6 < weights[0] < 0.97  # Bayes would have e^100 to 1
 
 

@@ -115,3 +115,21 @@ def test_what_lies_below_the_excited_octaves_does_not_count() -> None:
     left = [powers_of([one], RATE_HZ, np.ones(3), [8.0]).mean_square() for one in (noise, drift)]
     assert left[0] == pytest.approx(np.ones(3), rel=0.1)
     assert left[1] == pytest.approx(left[0], rel=1e-3)
+
+
+def test_what_a_repeated_torque_shows_again_counts_once() -> None:
+    """Far from noise ten times the same misfit is one; noise is another in each period."""
+    errors = np.tile(np.random.default_rng(2).normal(0.0, 1.0, (1000, 3)), (10, 1))
+    each, once = (
+        [powers_of([size * errors], RATE_HZ, np.full(3, 1e-9), periods=[times]) for size in (1.0, 0.5)]
+        for times in (1.0, 10.0)
+    )
+    windows, octaves = each[0].power.shape[0], each[0].power.shape[2]
+    far, near = np.full(3, 1e-6), np.full(3, 1.1)
+    assert each[0].values(far) == pytest.approx(windows * 3 * octaves, rel=0.1)
+    assert once[0].values(far) == pytest.approx(2.0 * 3 * octaves, rel=0.1)
+    gains = [
+        np.sum(small.log_likelihood(far)) - np.sum(large.log_likelihood(far)) for large, small in (each, once)
+    ]
+    assert gains[1] == pytest.approx(gains[0] / (0.5 * windows), rel=0.05)
+    assert once[0].values(near) == pytest.approx(each[0].values(near), rel=0.05)
