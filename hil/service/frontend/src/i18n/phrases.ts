@@ -1,17 +1,22 @@
 // Sentences that the service says again and again, known by their form: shown in the reader's language.
 
 import { wordsOf } from "../format.ts";
+import { devicePhrases } from "./device-phrases.ts";
 import { FIELD_REFUSALS } from "./field-refusals.ts";
 import { FILE_REFUSALS } from "./file-refusals.ts";
 import { FORM_WORDS } from "./form-words.ts";
+import { judgingPhrases } from "./judging-phrases.ts";
 import { HOLDS, REFUSALS } from "./refusal-phrases.ts";
 import { pausePhrases, runPhrases } from "./run-phrases.ts";
 import { personIn, wordsOf as wordsOfFirst, type Phrase, type Said } from "./said.ts";
+import { startPhrases } from "./start-phrases.ts";
 import { t } from "./text.ts";
 
 const named = (names = ""): string => (names === "RMCU and dynos" ? t("RMCU and dynos") : names);
 
 const turning = (of: Said): Said => ({ ...of, channel: wordsOf(of["channel"] ?? "") });
+
+const words = (text: string): string => translated(text) ?? text;
 
 // The words in groups are names and figures; they stay as they are.
 const PHRASES: Phrase[] = [
@@ -46,7 +51,10 @@ const PHRASES: Phrase[] = [
   [/^stays in service: (?<holds>.+)$/s, ({ holds = "" }) => t("stays in service: {holds}", { holds: holds.split("; ").map((one) => wordsOfFirst(HOLDS, one) ?? one).join("; ") })],
   [/^(?<count>\d+) fields are wrong\n(?<lines>.+)$/s, ({ count = "", lines = "" }) => t("{count} fields are wrong", { count }) + lines.split("\n").map((line) => `\n  ${ofField(line.trim())}`).join("")],
   ...FIELD_REFUSALS,
-  ...runPhrases((text) => translated(text) ?? text),
+  ...runPhrases(words),
+  ...startPhrases(words),
+  ...devicePhrases(words),
+  ...judgingPhrases(words),
   ...REFUSALS,
   ...FILE_REFUSALS,
   ...FORM_WORDS,
@@ -60,12 +68,25 @@ function ofField(line: string): string {
   return whole ?? (words === null ? line : `${field}: ${words}`);
 }
 
-// Null for a sentence that is none of them. Where it says first what it is about, that stays.
+// An error says what is wrong on its first line, and what to do on the next; an event has both on one.
+export const linesOf = (text: string): string[] => (/^\d+ fields are wrong\n/.test(text) ? [text] : text.split(/(\n\s*| {3})/));
+
+const KNOWN = new Map<string, string | null>(), MOST_KNOWN = 2000;
+
+// Null for a sentence that is none of them; of a table of events many are alike.
 export function translated(text: string): string | null {
-  const known = wordsOfFirst(PHRASES, text);
-  if (known !== null) return known;
-  const [, where = "", what = ""] = /^([^:\n]{1,100}): (.+)$/s.exec(text) ?? [], words = what ? wordsOfFirst(PHRASES, what) : null;
-  return words === null ? ofAll(text) : `${wordsOfFirst(PHRASES, where) ?? where}: ${words}`;
+  const known = KNOWN.get(text);
+  if (known !== undefined) return known;
+  const found = wordsOfFirst(PHRASES, text) ?? ofAll(text) ?? behindItsPlace(text);
+  if (KNOWN.size >= MOST_KNOWN) KNOWN.clear();
+  KNOWN.set(text, found);
+  return found;
+}
+
+// Where a sentence says first what it is about, that stays, unless it is known too.
+function behindItsPlace(text: string): string | null {
+  const [, where = "", what = ""] = /^([^\n]{1,120}?): (.+)$/s.exec(text) ?? [], known = what ? translated(what) : null;
+  return known === null ? null : `${wordsOfFirst(PHRASES, where) ?? where}: ${known}`;
 }
 
 const PAUSES = pausePhrases((text) => pausedInWords(text));
@@ -75,6 +96,7 @@ export const pausedInWords = (text: string): string => wordsOfFirst(PAUSES, text
 
 // Several sentences in one, if each of them is known.
 function ofAll(text: string): string | null {
-  const parts = text.split("; ").map((one) => (one === text ? null : translated(one)));
+  if (!text.includes("; ")) return null;
+  const parts = text.split("; ").map(translated);
   return parts.includes(null) ? null : parts.join("; ");
 }

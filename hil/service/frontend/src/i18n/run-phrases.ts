@@ -1,15 +1,8 @@
 // What a run says of its limits, its pauses, its devices and the way to safety, known by its form.
 
 import { wordsOf } from "../format.ts";
-import { said, type Phrase, type Said } from "./said.ts";
+import { around, ofChannel, said, type Phrase, type Words } from "./said.ts";
 import { t } from "./text.ts";
-
-type Words = (text: string) => string;
-
-// One sentence about another: what stands in it is in the reader's words too, where it is known.
-const around = ([form, make]: Phrase, inner: string, words: Words): Phrase => [form, (of) => make({ ...of, [inner]: words(of[inner] ?? "") })];
-
-const ofChannel = ([form, make]: Phrase): Phrase => [form, (of: Said) => make({ ...of, channel: wordsOf(of["channel"] ?? "") })];
 
 const RESPONSES: Record<string, string> = { warn: t("warning"), pause: t("pause"), hold: t("pause"), ramp_down: t("ramp down"), trip: t("trip"), emergency_stop: t("emergency stop") };
 
@@ -27,18 +20,18 @@ export const pausePhrases = (words: Words): Phrase[] => [
 export const runPhrases = (words: Words): Phrase[] => [
   ...pausePhrases(words),
   // sentences around others; the widest first
-  around(said("limit tripped: {reached}"), "reached", words),
-  around(said("warning: {reached}"), "reached", words),
-  around(said("not yet: {reached}"), "reached", words),
-  around(said("being ended: {doing}"), "doing", words),
-  around(said("stopped before it began: {reason}"), "reason", words),
-  around(said("resumes after {seconds} s: {by}"), "by", words),
-  around(said("{what} (the bench loop was delayed by {seconds} s just before)"), "what", words),
-  around(said("{complaint}, while the axle ran down"), "complaint", words),
+  around(said("limit tripped: {reached}"), words, "reached"),
+  around(said("warning: {reached}"), words, "reached"),
+  around(said("not yet: {reached}"), words, "reached"),
+  around(said("being ended: {doing}"), words, "doing"),
+  around(said("stopped before it began: {reason}"), words, "reason"),
+  around(said("resumes after {seconds} s: {by}"), words, "by"),
+  around(said("{what} (the bench loop was delayed by {seconds} s just before)"), words, "what"),
+  around(said("{complaint}, while the axle ran down"), words, "complaint"),
   [/^(?<name>.+): (?<reached>.+); response: (?<response>\w+)$/, (of) => t("{name}: {reached}; response: {response}", { ...of, reached: words(of["reached"] ?? ""), response: RESPONSES[of["response"] ?? ""] ?? of["response"] ?? "" })],
   // limits and what brings a channel back within them
-  ofChannel(said("slope of {channel} reached {value}, the limit is {limit}")),
-  ofChannel(said("{channel} reached {value}, the limit is {limit}")),
+  ofChannel(said("slope of {channel} reached {value}, the limit is {limit}"), "channel"),
+  ofChannel(said("{channel} reached {value}, the limit is {limit}"), "channel"),
   said("lower the plan's torque or speed"),
   said("let it cool down and look at its cooling, or have the plan ask for less, or for less long"),
   said("look at what this channel measures, and at the plan's steps before it"),
@@ -73,8 +66,8 @@ export const runPhrases = (words: Words): Phrase[] => [
   said("check that the RMCU is powered and on this bus"),
   said("the RMCU's frames come with wrong checksums"),
   said("the RMCU's counter stands still"),
-  said("{node}: heartbeat lost"),
-  said("{node}: drive in fault"),
+  around(said("{node}: heartbeat lost"), words, "node"),
+  around(said("{node}: drive in fault"), words, "node"),
   said("no heartbeat from {nodes}"),
   said("switch the dyno controller on, check node ids in the bench file"),
   said("the rear dynos send no measured values"),
