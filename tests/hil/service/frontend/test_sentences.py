@@ -2,9 +2,9 @@
 
 Sentences are read from the source, so that a new one is found without a fault that makes it be said. Its
 limits: a text that is put together over several functions is read in its parts, with the values given here;
-what libraries and drivers of others say stays as they say it; mistakes of files (bench files, plans) and notes
-of a computation are English in any language (docs/how-to/translate.md) and are not looked for; one word alone
-is no sentence.
+what libraries and drivers of others say stays as they say it; mistakes of files (bench files, plans) and
+notes of a computation are English in any language (docs/how-to/translate.md) and are not looked for; one word
+alone is no sentence.
 """
 
 from __future__ import annotations
