@@ -22,6 +22,17 @@ export function figure(value: number | null | undefined, unit = ""): string {
   return joined(text.replace("-", "−"), unit);
 }
 
+// Decimals that a person reads of a quantity while it changes, by its unit; more are noise of its sensor.
+const DECIMALS: Record<string, number> = { "N m": 1, "rad/s": 1, "1/min": 0, rpm: 0, "km/h": 1, "m/s": 2, "m/s²": 2, rad: 4, "°C": 1, K: 1, V: 1, A: 1, W: 0, kW: 2, Hz: 1, s: 3, "%": 1 };
+
+// A value that changes as it is read: decimals by its unit and not by its size, so that no figure changes its place.
+export function reading(value: number | null | undefined, unit: string, shown = unit): string {
+  const decimals = DECIMALS[unit];
+  if (value === null || value === undefined || decimals === undefined || !(Math.abs(value) < 1e6)) return figure(value, shown);
+  const none = Math.abs(value) < 0.5 * 10 ** -decimals; // no negative zero
+  return joined(fixed(none ? 0 : value, decimals).replace("-", "−"), shown);
+}
+
 export const fixed = (value: number, digits: number): string =>
   formatOf({ minimumFractionDigits: digits, maximumFractionDigits: digits }).format(value);
 
