@@ -60,6 +60,7 @@ _PARTS = {
     "the axle stands",
     "the speed is no longer measured",
     "though it had noise before",
+    "check the file; then: {reset}",
     "hil bench reset 7 --by NAME",
     "reset it at its service, or: hil bench reset 7 --by NAME --data 7",
     "start again: the bench is simulated in this process, and its stop ends with the process",

@@ -3,7 +3,7 @@
 import type { ComponentChildren, JSX } from "preact";
 import { LANGUAGE } from "./language.ts";
 import { withLocalMoments } from "./local-moments.ts";
-import { linesOf, pausedInWords, translated } from "./phrases.ts";
+import { atThePage, linesOf, translated, withoutPlace } from "./phrases.ts";
 
 export function English({ children }: { children: ComponentChildren }): JSX.Element {
   if (typeof children !== "string") return LANGUAGE === "en" ? <>{children}</> : <span lang="en">{children}</span>;
@@ -12,7 +12,8 @@ export function English({ children }: { children: ComponentChildren }): JSX.Elem
 
 function Line({ of }: { of: string }): JSX.Element {
   if (!of.trim()) return <>{of}</>;
-  if (LANGUAGE === "en") return <>{pausedInWords(withLocalMoments(of))}</>;
-  const known = translated(of);
-  return known === null ? <span lang="en">{withLocalMoments(of)}</span> : <>{withLocalMoments(known)}</>;
+  const line = withoutPlace(of);
+  if (LANGUAGE === "en") return <>{atThePage(withLocalMoments(line))}</>;
+  const known = translated(line);
+  return known === null ? <span lang="en">{withLocalMoments(line)}</span> : <>{withLocalMoments(known)}</>;
 }

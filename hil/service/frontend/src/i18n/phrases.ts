@@ -7,7 +7,7 @@ import { FILE_REFUSALS } from "./file-refusals.ts";
 import { FORM_WORDS } from "./form-words.ts";
 import { judgingPhrases } from "./judging-phrases.ts";
 import { HOLDS, REFUSALS } from "./refusal-phrases.ts";
-import { pausePhrases, runPhrases } from "./run-phrases.ts";
+import { pausePhrases, PLACES, runPhrases } from "./run-phrases.ts";
 import { personIn, wordsOf as wordsOfFirst, type Phrase, type Said } from "./said.ts";
 import { startPhrases } from "./start-phrases.ts";
 import { t } from "./text.ts";
@@ -89,10 +89,17 @@ function behindItsPlace(text: string): string | null {
   return known === null ? null : `${wordsOfFirst(PHRASES, where) ?? where}: ${known}`;
 }
 
-const PAUSES = pausePhrases((text) => pausedInWords(text));
+const HERE = [...pausePhrases((text) => atThePage(text)), ...PLACES];
 
-// For readers of English, too: what the engine calls held is paused here.
-export const pausedInWords = (text: string): string => wordsOfFirst(PAUSES, text) ?? text;
+// For readers of English, too: what the engine calls held is paused here, and a file of the service's machine a download.
+export function atThePage(text: string): string {
+  const found = wordsOfFirst(HERE, text);
+  if (found !== null) return found;
+  return text.includes("; ") ? text.split("; ").map(atThePage).join("; ") : text;
+}
+
+// A folder of the service's machine says nothing here; that of a run is a number, and the page is the run's. Ports stay.
+export const withoutPlace = (line: string): string => line.replace(/^\/(?!dev\/)(?:[^/:\n]+\/)*([^/:\n]+): /, (_, name: string) => (/^\d+$/.test(name) ? "" : `${name}: `));
 
 // Several sentences in one, if each of them is known.
 function ofAll(text: string): string | null {

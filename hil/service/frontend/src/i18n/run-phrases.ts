@@ -17,8 +17,18 @@ export const pausePhrases = (words: Words): Phrase[] => [
   [/^(?<reached>.+): held for (?<seconds>\S+) s$/s, ({ reached = "", seconds = "" }) => t("{reached}: paused for {seconds} s", { reached: words(reached), seconds })],
 ];
 
+// What is at a place on the service's machine is a download or a button here, to readers of English too.
+export const PLACES: Phrase[] = [
+  [/^hil evidence recover .+ recovers the recording of what was measured$/, () => t("the recording of what was measured is among this run's files; once downloaded, hil evidence recover recording.mcap mends it")],
+  [/^make them with: hil report .+$/, () => t("make them from the downloaded recording: hil report recording.mcap")],
+  [/^make sure that no one is in danger, remove the cause; then: (?:reset it at its service, or: )?hil bench reset .+$/, () => t("make sure that no one is in danger and remove the cause; then reset it here")],
+  [/^make sure that no one is in danger; then: (?:reset it at its service, or: )?hil bench reset .+$/, () => t("make sure that no one is in danger; then reset it here")],
+  [/^check the file; then: (?:reset it at its service, or: )?hil bench reset .+$/, () => t("check the file on the service's machine; then reset it here")],
+];
+
 export const runPhrases = (words: Words): Phrase[] => [
   ...pausePhrases(words),
+  ...PLACES,
   // sentences around others; the widest first
   around(said("limit tripped: {reached}"), words, "reached"),
   around(said("warning: {reached}"), words, "reached"),
@@ -95,7 +105,6 @@ export const runPhrases = (words: Words): Phrase[] => [
   said("nothing was commanded"),
   said("safe: confirmed"),
   [/^safe: not confirmed \((?<why>.+)\)$/s, (of) => t("safe: not confirmed ({why})", { why: words(of["why"] ?? "") })],
-  said("hil evidence recover {folder} recovers the recording of what was measured"),
   said("not executed: nothing may move on a bench that has failed"),
   said("started, but not completed"),
   said("the command of this run has ended"),
@@ -104,9 +113,6 @@ export const runPhrases = (words: Words): Phrase[] => [
   said("the operator typed e"),
   said("an emergency stop may be latched here, but cannot be read"),
   said("it could NOT be latched, so nothing prevents arming the bench again: {reason}"),
-  [/^make sure that no one is in danger, remove the cause; then: reset it at its service, or: (?<command>hil bench reset .+)$/, (of) => t("make sure that no one is in danger and remove the cause; then reset it here, or with {command}", of)],
-  [/^make sure that no one is in danger, remove the cause; then: (?<command>hil bench reset .+)$/, (of) => t("make sure that no one is in danger and remove the cause; then reset it with {command}", of)],
-  [/^make sure that no one is in danger; then: (?<command>hil bench reset .+)$/, (of) => t("make sure that no one is in danger; then reset it with {command}", of)],
   // sensors at rest
   said("zero check"),
   said("{channel} cannot be read at rest: {reason}"),

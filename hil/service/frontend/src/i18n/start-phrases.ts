@@ -96,7 +96,6 @@ export const startPhrases = (words: Words): Phrase[] => [
   around(said("stopped by the operator, when the process that holds the bench {why}"), words, "why"),
   said("was ended by signal {number}"),
   said("interrupted before the reports were written"),
-  said("make them with: hil report {folder}"),
   said("writing the result"),
   said("writing the reports"),
   said("the run is over"),
@@ -109,7 +108,6 @@ export const startPhrases = (words: Words): Phrase[] => [
   said("the forecast was ended"),
   said("forecast"),
   // emergency stops
-  said("check the file; then: {command}"),
   said("make sure that no one is in danger; then: start again: the bench is simulated in this process, and its stop ends with the process"),
   said("emergency stops are kept in {place}, which other accounts of this machine may not see; an administrator can make a common directory: {command}"),
   said("is a link, which any account may have created"),
