@@ -107,6 +107,10 @@ export const startPhrases = (words: Words): Phrase[] => [
   said("a message between the processes of a run cannot be understood: {what}"),
   said("the forecast was ended"),
   said("forecast"),
+  // why the speed of a stopped bench is not known
+  said("the bench is simulated, and exists during a run only"),
+  said("the adapter of bus '{bus}' ({interface}) would acknowledge frames when it is opened"),
+  said("the RMCU sent no speed within {seconds} s"),
   // emergency stops
   said("make sure that no one is in danger; then: start again: the bench is simulated in this process, and its stop ends with the process"),
   said("emergency stops are kept in {place}, which other accounts of this machine may not see; an administrator can make a common directory: {command}"),
