@@ -1,7 +1,7 @@
 // Sentences that the service says, known by their form: the English sentence with its names and figures in braces is both
 // the form and the key of its translation.
 
-import { wordsOf as wordsOfChannel } from "../format.ts";
+import { figuresIn, wordsOf as wordsOfChannel } from "../format.ts";
 import { kindInWords } from "../ui/kinds.ts";
 import { t } from "./text.ts";
 
@@ -38,11 +38,16 @@ export function personIn(name = ""): string {
   return place ? t("somebody at {place}", { place }) : name;
 }
 
+// What is a figure, with or without its unit; not a version, an address or a name.
+const isFigure = (text: string): boolean => /^[-−±]?\d+\.\d+(?:e[-+]?\d+)?(?: [^\d\s]+){0,2}$/.test(text);
+
+const withFigures = (of: Said): Said => Object.fromEntries(Object.entries(of).map(([name, value]) => [name, value !== undefined && isFigure(value) ? figuresIn(value) : value]));
+
 // The words of the first form that fits; null if none does.
 export function wordsOf(phrases: readonly Phrase[], text: string): string | null {
   for (const [form, words] of phrases) {
     const found = form.exec(text);
-    if (found) return words(found.groups ?? {});
+    if (found) return words(withFigures(found.groups ?? {}));
   }
   return null;
 }
