@@ -29,6 +29,7 @@ _SAID_BY = (
     "hil/engine/run",
     "hil/engine/stop",
     "hil/execution",
+    "sim_backend/udp_interface.py",
     "test_plans/evidence",
     "test_plans/judging.py",
     "test_plans/metrics",
@@ -75,6 +76,10 @@ _PARTS = {
     "7, approved by 7",
     "segment '7' was stopped after 7 s; : the control loop is not stable",  # never without a reason
     # what others say, and what is looked for in it
+    "Failed to receive: 7",
+    "Failed to transmit: 7",
+    "a frame has at most 7 bytes here, not 7",
+    "simulated bench at 7",
     "Could not read from serial device: 7",
     "Could not write to serial device: 7",
     "Transmit buffer full",

@@ -40,6 +40,9 @@ export const devicePhrases = (words: Words): Phrase[] => [
   said("its driver is not installed ({words})"),
   said("no socketcand answers at {address} ({words})"),
   said("start socketcand there, or correct host and port under options in the bench file"),
+  said("no simulated bench at {address}; start one with 'hil bench sim'"),
+  said("the bus at {address} runs at {rate} bit/s, not at {wanted}"),
+  said("the bench at {address} has ended"),
   said("this system has no SocketCAN: 'modprobe can_raw', or use another interface"),
   said("'ip link show type can' lists the interfaces there are, '{command}' brings one up"),
   said("check [buses] in the bench file, the adapter and its driver"),
@@ -63,6 +66,7 @@ export const devicePhrases = (words: Words): Phrase[] => [
   // dynamometers, CANopen
   said("rear left"),
   said("rear right"),
+  said("dynos"),
   around(said("dyno '{name}' (node {node})"), words, "name"),
   around(said("no answer within {seconds} s while {object} was written"), words, "object"),
   around(said("no answer within {seconds} s while {object} was read"), words, "object"),

@@ -8,7 +8,7 @@ import { FORM_WORDS } from "./form-words.ts";
 import { judgingPhrases } from "./judging-phrases.ts";
 import { HOLDS, REFUSALS } from "./refusal-phrases.ts";
 import { pausePhrases, PLACES, runPhrases } from "./run-phrases.ts";
-import { personIn, wordsOf as wordsOfFirst, type Phrase, type Said } from "./said.ts";
+import { around, personIn, wordsOf as wordsOfFirst, type Phrase, type Said } from "./said.ts";
 import { startPhrases } from "./start-phrases.ts";
 import { t } from "./text.ts";
 
@@ -19,7 +19,7 @@ const turning = (of: Said): Said => ({ ...of, channel: wordsOf(of["channel"] ?? 
 const words = (text: string): string => translated(text) ?? text;
 
 // The words in groups are names and figures; they stay as they are.
-const PHRASES: Phrase[] = [
+const FORMS: Phrase[] = [
   [/^drives enabled$/, () => t("drives enabled")],
   [/^(?<names>.+) answer$/, (of) => t("{names} answer", { names: named(of["names"]) })],
   [/^(?<name>.+) \((?<kind>gain|phase) stabilization\) written, read back$/, (of) => (of["kind"] === "gain" ? t("{name} (gain stabilization) written, read back", of) : t("{name} (phase stabilization) written, read back", of))],
@@ -60,6 +60,9 @@ const PHRASES: Phrase[] = [
   ...FORM_WORDS,
   [/^emergency stop since (?<since>[^,]+), by (?<person>.+?): requested by .+$/, (of) => t("emergency stop since {since}, by {person}", { ...of, person: personIn(of["person"]) })],
 ];
+
+// Why something is so may be another of these sentences, whatever it is a reason of.
+const PHRASES = FORMS.map((phrase) => around(phrase, words, "reason", "why", "what", "words"));
 
 // A line of several: the field, then what is wrong with it.
 function ofField(line: string): string {

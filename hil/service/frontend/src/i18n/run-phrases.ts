@@ -88,9 +88,9 @@ export const runPhrases = (words: Words): Phrase[] => [
   [/^check (?<device>\S+)$/, (of) => t("check {device}", of)],
   // the way to safety
   said("safe state"),
-  said("{device} did not confirm its safe state within {seconds} s"),
-  said("{device} did not confirm its safe state within {seconds} s: {reason}"),
-  said("{device} does not confirm that its torque is off"),
+  around(said("{device} did not confirm its safe state within {seconds} s"), words, "device"),
+  around(said("{device} did not confirm its safe state within {seconds} s: {reason}"), words, "device"),
+  around(said("{device} does not confirm that its torque is off"), words, "device"),
   said("cut the drives' power before you approach the bench"),
   said("the process that holds the bench"),
   said("hung: it sent nothing for {seconds} s"),

@@ -25,7 +25,7 @@ const formOf = (text: string): RegExp =>
 // `npm run texts` finds these as it finds those of `t`.
 export const said = (text: string): Phrase => [formOf(text), (of) => t(text, inWords(of))];
 
-const withWords = ([form, make]: Phrase, names: string[], words: Words): Phrase => [form, (of) => make({ ...of, ...Object.fromEntries(names.map((name) => [name, words(of[name] ?? "")])) })];
+const withWords = ([form, make]: Phrase, names: string[], words: Words): Phrase => [form, (of) => make({ ...of, ...Object.fromEntries(names.filter((name) => of[name]).map((name) => [name, words(of[name] ?? "")])) })];
 
 // A sentence about others: what stands in it is in the reader's words too, where it is known.
 export const around = (phrase: Phrase, words: Words, ...inner: string[]): Phrase => withWords(phrase, inner, words);

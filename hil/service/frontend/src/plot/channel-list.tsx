@@ -43,5 +43,5 @@ export function ChannelList({ channels, plots, newest, onPut }: Options): JSX.El
 
 function valueText(traces: Traces, channel: string, unit: string): string {
   const value = valueAt(traces, channel, traces.time.at(-1) ?? 0);
-  return value ? reading(value.highest, unit) : unit;
+  return value ? reading(value.highest, unit) : unit.replaceAll(" ", "\u00a0");
 }
