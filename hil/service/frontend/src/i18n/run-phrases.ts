@@ -37,6 +37,8 @@ export const runPhrases = (words: Words): Phrase[] => [
   around(said("stopped before it began: {reason}"), words, "reason"),
   around(said("resumes after {seconds} s: {by}"), words, "by"),
   around(said("{what} (the bench loop was delayed by {seconds} s just before)"), words, "what"),
+  // what may be its cause: the loop of the bench, or frames that came damaged
+  [/^(?<what>.+?) \((?<why>(?:bus '|the bench loop was delayed by ).+)\)$/s, (of) => t("{what} ({why})", of)],
   around(said("{complaint}, while the axle ran down"), words, "complaint"),
   [/^(?<name>.+): (?<reached>.+); response: (?<response>\w+)$/, (of) => t("{name}: {reached}; response: {response}", { ...of, reached: words(of["reached"] ?? ""), response: RESPONSES[of["response"] ?? ""] ?? of["response"] ?? "" })],
   // limits and what brings a channel back within them
