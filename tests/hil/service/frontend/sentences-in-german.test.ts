@@ -17,6 +17,7 @@ const IN_GERMAN: Record<string, string> = {
   "bus 'rmcu' (hil-udp 127.0.0.1:7): cannot be opened: no simulated bench at 127.0.0.1:7; start one with 'hil bench sim'": "Bus „rmcu“ (hil-udp 127.0.0.1:7): lässt sich nicht öffnen: kein simulierter Prüfstand unter 127.0.0.1:7; mit „hil bench sim“ einen starten",
   "RMCU: the RMCU's frames come with wrong checksums (bus 'rmcu': 80 of 500 frames RMCU_Control are damaged (wrong checksum))": "RMCU: die Frames der RMCU haben falsche Prüfsummen (Bus „rmcu“: 80 von 500 Frames RMCU_Control sind beschädigt (falsche Prüfsumme))",
   "dynos: rear left: EMCY 0x2320 Current; rear left: drive in fault": "Dynamometer: hinten links: EMCY 0x2320 (Strom); hinten links: Antrieb auf Störung",
+  "ram: 42% of its samples are lost; the slave says 69 times that it is overloaded": "ram: 42% seiner Abtastwerte sind verloren; der Slave meldet 69-mal, dass er überlastet ist",
   "device 'panel' (socket://10.0.0.7:5000): sending failed: 0 of 9 bytes were taken": "Gerät „panel“ (socket://10.0.0.7:5000): Senden fehlgeschlagen: 0 von 9 Bytes wurden angenommen",
   "device 'panel': EMAS 1400: the panel is not in remote mode: it is operated by hand": "Gerät „panel“: EMAS 1400: das Bedienpanel ist nicht auf Fernbedienung: es wird von Hand bedient",
   "plan, segment 'step': requests 400 N m of driving torque, the bench allows 350 N m": "Plan, Abschnitt „step“: fordert 400 N m (Antriebsmoment), der Prüfstand erlaubt 350 N m",

@@ -68,7 +68,7 @@ export const devicePhrases = (words: Words): Phrase[] => [
   said("rear right"),
   said("dynos"),
   // EMCY of CiA 301, as the library calls its classes
-  around(said("{node}: EMCY {code} {text}"), words, "node", "text"),
+  around(said("{node}: EMCY {code} {class}"), words, "node", "class"),
   around(said("{node}: EMCY {code}"), words, "node"),
   said("Error Reset / No Error"),
   said("Generic Error"),

@@ -80,7 +80,7 @@ const KNOWN = new Map<string, string | null>(), MOST_KNOWN = 2000;
 export function translated(text: string): string | null {
   const known = KNOWN.get(text);
   if (known !== undefined) return known;
-  const found = wordsOfFirst(PHRASES, text) ?? ofAll(text) ?? behindItsPlace(text);
+  const found = wordsOfFirst(PHRASES, text) ?? behindItsPlace(text) ?? ofAll(text);
   if (KNOWN.size >= MOST_KNOWN) KNOWN.clear();
   KNOWN.set(text, found);
   return found;
@@ -88,7 +88,7 @@ export function translated(text: string): string | null {
 
 // Where a sentence says first what it is about, that stays, unless it is known too.
 function behindItsPlace(text: string): string | null {
-  const [, where = "", what = ""] = /^([^\n]{1,120}?): (.+)$/s.exec(text) ?? [], known = what ? translated(what) : null;
+  const [, where = "", what = ""] = /^([^\n;]{1,120}?): (.+)$/s.exec(text) ?? [], known = what ? translated(what) : null;
   return known === null ? null : `${wordsOfFirst(PHRASES, where) ?? where}: ${known}`;
 }
 

@@ -82,6 +82,8 @@ export const startPhrases = (words: Words): Phrase[] => [
   said("make the reports of this run with hil report"),
   said("supervision"),
   said("{count} samples arrived too late for their row and were discarded"),
+  said("the recording cannot be written: {reason}"),
+  said("{what} (disk at {place}, {free} of {all} MB free)"),
   said("internal error: {what}"),
   said("internal error"),
   said("please report it"),
