@@ -200,6 +200,7 @@ class BenchData(_Data):
     last_speed: LastSpeed | None = Field(
         None, description="of its newest run, while an emergency stop is latched; null if it is not known"
     )
+    speed_unknown: str = Field("", description="why it is not known, where that was looked for")
 
 
 class VariableData(_Data):

@@ -140,8 +140,7 @@ class Service:
         self.durations = Durations(DurationStore(engine))
         self.turns = Turns(self.runs, self.leases, self.reservations, self.durations)
         self.queue_forecast = QueueForecast(self)
-        self.layouts = LayoutStore(engine)
-        self.notes = NoteStore(engine)
+        self.layouts, self.notes = LayoutStore(engine), NoteStore(engine)
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
         self.people, self.sign_in = PersonStore(engine), sign_in
         self._open_given(GivenStore(engine))
@@ -291,6 +290,7 @@ class Service:
             stop_confirmed=not (isinstance(bench, RemoteBench) and bench.stop_by),
             away_since=agent.heard_at if agent and agent.away else None,
             last_speed=self.live_hub.last_speed(name) if state == "emergency_stop" else None,
+            speed_unknown=self.live_hub.why_no_speed(name),
         )
 
     def waiting(self, bench: str) -> Waiting:

@@ -25,6 +25,7 @@ from hil.execution.benches import benches_of
 from hil.execution.data_folder import alone_in, make_private, name_in
 from hil.service.api import Guarding, Rates, StopAddress, application, bounded
 from hil.service.archive import Archive
+from hil.service.heard_speeds import HeardSpeeds
 from hil.service.jobs.campaigns import Simulating
 from hil.service.notices import NoticeSettings, NoticeWatch, Post
 from hil.service.recordings import Room
@@ -176,6 +177,8 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         asyncio.create_task(going_on(lambda: in_turns(service.owners.follow(lambda: service.closing)))),
     ]
     besides.append(asyncio.create_task(going_on(lambda: in_turns(_durations_of(service)))))
+    speeds = HeardSpeeds(service)
+    besides.append(asyncio.create_task(going_on(lambda: in_turns(speeds.work(lambda: service.closing)))))
     if request.notices is not None:
         watch = NoticeWatch(service, Post(request.folder, request.notices))
         besides.append(asyncio.create_task(going_on(lambda: in_turns(watch.work()))))

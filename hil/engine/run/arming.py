@@ -66,7 +66,7 @@ def refuse_others(identities: Iterable[Identity]) -> None:
     wrong = [identity for identity in identities if not identity.matches]
     if wrong:
         text = "; ".join(f"{identity.device}: {mismatch_in_words(identity)}" for identity in wrong)
-        raise BenchError(text, where="identification", fix=what_to_do(wrong[0]))
+        raise BenchError(text, where="device identification", fix=what_to_do(wrong[0]))
 
 
 LISTEN_S = 0.2

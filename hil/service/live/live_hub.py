@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import datetime
 import time
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable
@@ -71,6 +72,11 @@ class LiveView:
     looked_s: float = field(default_factory=time.monotonic)
 
 
+def last_speed(speed_rad_s: float, at: datetime.datetime) -> LastSpeed:
+    """A motor's speed, and whether that is more than standstill."""
+    return LastSpeed(speed_rad_s=speed_rad_s, at=at, turns=abs(speed_rad_s) > STANDSTILL_RAD_S)
+
+
 class LiveHub:
     """Viewers of benches, what they are shown, and when there is something new.
 
@@ -91,18 +97,48 @@ class LiveHub:
         self.caches: defaultdict[str, BroadcastCache] = defaultdict(BroadcastCache)  # of each bench
         self._runs: dict[str, LiveView] = {}
         self._version: defaultdict[str, int] = defaultdict(int)
+        self._heard: dict[str, LastSpeed] = {}  # of benches that no run has measured since the start
+        self._unheard: dict[str, str] = {}  # why not, by bench
 
     def run_of(self, bench: str) -> LiveView | None:
         """The run that is shown of a bench."""
         return self._runs.get(bench)
 
     def last_speed(self, bench: str) -> LastSpeed | None:
-        """The motor's speed in the last sample of the newest run, its run-down included; None if unknown."""
+        """The motor's speed in the last sample of the newest run and its run-down, else as it was heard.
+
+        None if neither is known.
+        """
         shown = self._runs.get(bench)
         if shown is None or shown.live.last_speed is None:
-            return None
-        speed_rad_s, at = shown.live.last_speed
-        return LastSpeed(speed_rad_s=speed_rad_s, at=at, turns=abs(speed_rad_s) > STANDSTILL_RAD_S)
+            return self._heard.get(bench)
+        return last_speed(*shown.live.last_speed)
+
+    def why_no_speed(self, bench: str) -> str:
+        """Why the speed of a bench could not be heard; '' if it was, or if no one has listened."""
+        return self._unheard.get(bench, "")
+
+    def has_measured(self, bench: str) -> bool:
+        """Whether a run of this service has measured the speed of a bench."""
+        shown = self._runs.get(bench)
+        return shown is not None and shown.live.last_speed is not None
+
+    def take_heard(self, bench: str, speed: LastSpeed) -> None:
+        """Show a speed that was heard, while no run has measured one."""
+        self._heard[bench] = speed
+        self._unheard.pop(bench, None)
+        self.changed(bench)
+
+    def take_unheard(self, bench: str, why: str) -> None:
+        """Show why a speed could not be heard."""
+        if why != self._unheard.get(bench):
+            self._unheard[bench] = why
+            self.changed(bench)
+
+    def forget_heard(self, bench: str) -> None:
+        """A bench is driven again: what was heard before says nothing any more."""
+        self._heard.pop(bench, None)
+        self._unheard.pop(bench, None)
 
     def runs(self) -> set[int]:
         """Numbers of all runs that are shown."""

@@ -22,6 +22,17 @@ export function figure(value: number | null | undefined, unit = ""): string {
   return joined(text.replace("-", "−"), unit);
 }
 
+// Decimals that a person reads of a quantity while it changes, by its unit; more are noise of its sensor.
+const DECIMALS: Record<string, number> = { "N m": 1, "rad/s": 1, "1/min": 0, rpm: 0, "km/h": 1, "m/s": 2, "m/s²": 2, rad: 4, "°C": 1, K: 1, V: 1, A: 1, W: 0, kW: 2, Hz: 1, s: 3, "%": 1 };
+
+// A value that changes as it is read: decimals by its unit and not by its size, so that no figure changes its place.
+export function reading(value: number | null | undefined, unit: string, shown = unit): string {
+  const decimals = DECIMALS[unit];
+  if (value === null || value === undefined || decimals === undefined || !(Math.abs(value) < 1e6)) return figure(value, shown);
+  const none = Math.abs(value) < 0.5 * 10 ** -decimals; // no negative zero
+  return joined(fixed(none ? 0 : value, decimals).replace("-", "−"), shown);
+}
+
 export const fixed = (value: number, digits: number): string =>
   formatOf({ minimumFractionDigits: digits, maximumFractionDigits: digits }).format(value);
 
@@ -43,7 +54,14 @@ export const percent = (share: number, digits = 0): string =>
 
 export const whole = (value: number): string => formatOf({ maximumFractionDigits: 0 }).format(value);
 
-export const joined = (text: string, unit: string): string => (unit && unit !== "1" ? `${text}\u00a0${unit}` : text);
+// A unit of several words stays on the line of its value.
+export const joined = (text: string, unit: string): string => (unit && unit !== "1" ? `${text} ${unit}`.replaceAll(" ", "\u00a0") : text);
+
+const DECIMAL = formatOf({}).formatToParts(0.5).find((part) => part.type === "decimal")?.value ?? ".";
+
+// Figures in a text of the service, which has a point in them, as the reader's language writes them.
+export const figuresIn = (text: string, mark = DECIMAL): string =>
+  text.replace(/(?<![\w.:/-])([-−]?)(\d+)\.(\d+(?:e[-+]?\d+)?)(?![\w:/-]|\.\d)/g, (_, sign: string, before: string, part: string) => `${sign && "−"}${before}${mark}${part}`);
 
 // As disks and files are given: 1 MB is a million.
 export function bytes(count: number): string {
@@ -85,7 +103,7 @@ const UNITS: Record<string, string> = { nm: "N m", rad_s: "rad/s", m_s: "m/s", s
 const CHANNELS: Record<string, string> = {
   motor_speed: t("motor speed"), wheel_speed: t("wheel speed"), wheel_speed_left: t("wheel speed left"), wheel_speed_right: t("wheel speed right"), vehicle_speed: t("vehicle speed"),
   motor_torque: t("motor torque"), motor_torque_ref: t("motor torque ref"), shaft_torque: t("shaft torque"), shaft_torque_left: t("shaft torque left"), shaft_torque_right: t("shaft torque right"),
-  driving_torque_ref: t("driving torque ref"), driving_torque_est: t("driving torque est"), dyno_torque_left: t("dyno torque left"), dyno_torque_right: t("dyno torque right"),
+  driving_torque_ref: t("driving torque ref"), driving_torque_est: t("driving torque est"), dyno_torque_ref: t("dyno torque ref"), dyno_torque_left: t("dyno torque left"), dyno_torque_right: t("dyno torque right"),
 };
 
 const endingOf = (name: string): string | undefined =>
@@ -102,5 +120,5 @@ export function wordsOf(channel: string): string {
 }
 
 export const limitText = (upper: number | null | undefined, lower: number | null | undefined, unit = ""): string =>
-  [lower === null || lower === undefined ? "" : `≥ ${figure(lower, unit)}`, upper === null || upper === undefined ? "" : `≤ ${figure(upper, unit)}`]
+  [lower === null || lower === undefined ? "" : `≥\u00a0${figure(lower, unit)}`, upper === null || upper === undefined ? "" : `≤\u00a0${figure(upper, unit)}`]
     .filter(Boolean).join(", ") || "–";

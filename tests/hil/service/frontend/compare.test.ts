@@ -17,7 +17,7 @@ test("less is better below an upper limit, more above a lower one, and neither w
 });
 
 test("a difference has its sign and its unit, and a share of the first where that is not zero", () => {
-  assert.equal(changeText({ by: -10, kind: "better" }, { unit: "N m", relative: -0.1 }), "−10.0\u00a0N m (−10.0%)");
+  assert.equal(changeText({ by: -10, kind: "better" }, { unit: "N m", relative: -0.1 }), "−10.0\u00a0N\u00a0m (−10.0%)");
   assert.equal(changeText({ by: 0.5, kind: "open" }, { unit: "s", relative: null }), "+0.50\u00a0s");
 });
 

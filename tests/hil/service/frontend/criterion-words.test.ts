@@ -22,8 +22,8 @@ test("a criterion has its author's title, or the words of its metric, and its id
 });
 
 test("a failure is one sentence with value, limit and place", () => {
-  assert.equal(failureOf(ONE), "Peak of the shaft torque in gain_0kmh: 104\u00a0N m, allowed is ≤ 90.0\u00a0N m.");
-  assert.equal(failureOf({ ...ONE, id: "comfort", value: null }), "comfort: no value, allowed is ≤ 90.0\u00a0N m.");
+  assert.equal(failureOf(ONE), "Peak of the shaft torque in gain_0kmh: 104\u00a0N\u00a0m, allowed is ≤\u00a090.0\u00a0N\u00a0m.");
+  assert.equal(failureOf({ ...ONE, id: "comfort", value: null }), "comfort: no value, allowed is ≤\u00a090.0\u00a0N\u00a0m.");
   assert.equal(allowed({ ...ONE, below: "gain", upper: null }), "below gain");
 });
 

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { moment } from "../../../../hil/service/frontend/src/format.ts";
 import { withLocalMoments } from "../../../../hil/service/frontend/src/i18n/local-moments.ts";
-import { pausedInWords, translated } from "../../../../hil/service/frontend/src/i18n/phrases.ts";
+import { atThePage, translated, withoutPlace } from "../../../../hil/service/frontend/src/i18n/phrases.ts";
 
 const KNOWN = [
   "drives enabled", "RMCU and dynos answer", "phase (phase stabilization) written, read back", "notch 2 (gain stabilization) written, read back", "dynos hold 20.0 km/h", "dynos simulate the vehicle",
@@ -32,14 +32,14 @@ for (const text of OF_SAFETY) test(`known of safety: ${text}`, () => assert.equa
 test("channels of limits are in words, and of a stop the way to reset it here", () => {
   assert.equal(translated("limit tripped: motor_speed_rad_s reached 712 rad/s, the limit is 700 rad/s"), "limit tripped: motor speed reached 712 rad/s, the limit is 700 rad/s");
   assert.equal(translated("oil: oil_c reached 91 °C, the limit is 90 °C; response: hold"), "oil: oil c reached 91 °C, the limit is 90 °C; response: pause");
-  assert.equal(translated("make sure that no one is in danger, remove the cause; then: reset it at its service, or: hil bench reset sim --by NAME"), "make sure that no one is in danger and remove the cause; then reset it here, or with hil bench reset sim --by NAME");
+  assert.equal(translated("make sure that no one is in danger, remove the cause; then: reset it at its service, or: hil bench reset sim --by NAME"), "make sure that no one is in danger and remove the cause; then reset it here");
 });
 
 test("what the engine holds is paused, to readers of English too", () => {
   assert.equal(translated("held, torque off, the dynos hold their speed: paused by the operator"), "paused, torque off, the dynos hold their speed: paused by the operator");
-  assert.equal(pausedInWords("being ended: held: oil is hot"), "being ended: paused: oil is hot");
-  assert.equal(pausedInWords("oil is hot: held for 600 s"), "oil is hot: paused for 600 s");
-  assert.equal(pausedInWords("the speed is held"), "the speed is held");
+  assert.equal(atThePage("being ended: held: oil is hot"), "being ended: paused: oil is hot");
+  assert.equal(atThePage("oil is hot: held for 600 s"), "oil is hot: paused for 600 s");
+  assert.equal(atThePage("the speed is held"), "the speed is held");
 });
 
 test("of an emergency stop it stays when and by whom", () => {
@@ -53,7 +53,7 @@ test("what is not known is left to be read as English", () => {
 test("of roles, stops and a run-down the figures and names stay", () => {
   assert.equal(translated("anna is viewer; operator is needed"), "anna has the role viewer; the role operator is needed");
   assert.equal(translated("emergency stop: requested by anna from 10.0.0.7 over the service's API"), "emergency stop, requested by anna from 10.0.0.7");
-  assert.equal(translated("make sure that no one is in danger; then: reset it at its service, or: hil bench reset sim --by NAME"), "make sure that no one is in danger; then reset it here, or with hil bench reset sim --by NAME");
+  assert.equal(translated("make sure that no one is in danger; then: reset it at its service, or: hil bench reset sim --by NAME"), "make sure that no one is in danger; then reset it here");
   assert.equal(translated("begins, no device gives torque; the axle turns: motor_speed_rad_s reads 141 rad/s"), "the run-down begins, no device gives torque; motor speed 141 rad/s");
   assert.equal(translated("ends after 10 s: not recorded any longer; the axle turns: motor_speed_rad_s reads 138 rad/s"), "the run-down is not recorded any longer after 10 s; motor speed 138 rad/s");
   assert.equal(translated("ends after 4.2 s: the axle stands"), "the run-down ends after 4.2 s: the axle stands");
@@ -79,4 +79,16 @@ test("moments in texts are those of the reader's clock", () => {
   assert.equal(withLocalMoments("since 2026-11-28T12:37:18+00:00, by anna"), `since ${shown}, by anna`);
   assert.equal(withLocalMoments("from 2026-11-28 12:37 UTC to later"), `from ${shown} to later`);
   assert.equal(withLocalMoments("version 2026-11-28, 99-99 2026-99-99T99:99:99Z"), "version 2026-11-28, 99-99 2026-99-99T99:99:99Z");
+});
+
+test("a place on the service's machine is a download or a button here, to readers of English too", () => {
+  const safe = "cut the drives' power before you approach the bench", recover = "hil evidence recover /srv/hil/runs/12 recovers the recording of what was measured";
+  const download = "the recording of what was measured is among this run's files; once downloaded, hil evidence recover recording.mcap mends it";
+  assert.deepEqual([atThePage(recover), translated(recover)], [download, download]);
+  assert.equal(atThePage(`${safe}; ${recover}`), `${safe}; ${download}`);
+  assert.equal(atThePage("make sure that no one is in danger; then: reset it at its service, or: hil bench reset /srv/hil/b.toml --by NAME --data /srv/hil"), "make sure that no one is in danger; then reset it here");
+  assert.equal(atThePage("make them with: hil report /srv/hil/runs/12"), "make them from the downloaded recording: hil report recording.mcap");
+  assert.equal(withoutPlace("/srv/hil/runs/12: 7 MB are free"), "7 MB are free");
+  assert.equal(withoutPlace("/srv/hil/plans/a.yaml: is not UTF-8"), "a.yaml: is not UTF-8");
+  assert.equal(withoutPlace("/dev/ttyUSB0: no answer"), "/dev/ttyUSB0: no answer");
 });

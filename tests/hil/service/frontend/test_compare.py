@@ -52,7 +52,7 @@ def test_a_run_of_a_copy_is_compared_with_the_best_run_in_one_click(
     expect(page).to_have_url(re.compile("runs=2,1"))
     differs = page.locator(".differs")
     expect(differs).to_contain_text("segment s (step): to_nm 100 ($torque_nm)")
-    expect(differs).to_contain_text(re.compile("instead of 120.N m"))
+    expect(differs).to_contain_text(re.compile("instead of 120.N.m"))
     assert page.locator("main").inner_text().count("to_nm") == 1
     expect(region(page, "Criteria").locator("table")).to_contain_text("Peak of the shaft torque")
     expect(page.locator("figure.plot")).to_have_count(3)

@@ -7,17 +7,13 @@ each value. `translated` of the page has to know the form of each.
 from __future__ import annotations
 
 import ast
-import json
-import subprocess
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
-_ROOT = Path(__file__).parents[4]
-_SERVICE = _ROOT / "hil/service"
-_NODE = _ROOT / ".venv-node/bin/node"
-_PHRASES = _SERVICE / "frontend/src/i18n/phrases.ts"
+from tests.hil.service.frontend.sentences import NODE, ROOT, VALUE, unknown
+
+_SERVICE = ROOT / "hil/service"
 #: What never reaches the page: commands, agents, providers of sign-ins, notices, what only its log says.
 _ELSEWHERE = (
     "agents/run_upload.py",
@@ -41,7 +37,6 @@ _NEVER_SHOWN = {
     "subject 7 of 7 has no group with a role",
     "hil serve --add-token NAME=admin",  # a command is one in any language
 }
-_VALUE = "7"
 _VALUES = {
     "me.role": "viewer",
     "role": "operator",
@@ -69,7 +64,7 @@ def _texts(node: ast.expr, around: ast.AST) -> Iterator[str]:
 def _piece(node: ast.expr, around: ast.AST) -> str:
     if isinstance(node, ast.FormattedValue):
         said = next(_texts(node.value, around), "") if isinstance(node.value, ast.Name) else ""
-        return said or _VALUES.get(ast.unparse(node.value), _VALUE)
+        return said or _VALUES.get(ast.unparse(node.value), VALUE)
     assert isinstance(node, ast.Constant)
     return str(node.value)
 
@@ -101,29 +96,18 @@ def _every_refusal() -> dict[str, str]:
         where = path.relative_to(_SERVICE).as_posix()
         if not where.startswith((*_ELSEWHERE, "frontend/")):
             tree = ast.parse(path.read_text("utf-8"))
-            found |= {text: where for text in _refusals(tree) if text and text != _VALUE}
+            found |= {text: where for text in _refusals(tree) if text and text != VALUE}
     return {text: where for text, where in found.items() if text not in _NEVER_SHOWN}
 
 
-def _unknown(texts: list[str]) -> list[str]:
-    """Those whose form the page does not know."""
-    program = (
-        f"const {{translated}} = await import({json.dumps(_PHRASES.as_uri())});"
-        f"console.log(JSON.stringify({json.dumps(texts)}.filter((one) => translated(one) === null)))"
-    )
-    command = [str(_NODE), "--input-type=module", "--no-warnings", "-e", program]
-    found: list[str] = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
-    return found
-
-
 @pytest.mark.slow
-@pytest.mark.skipif(not _NODE.is_file(), reason="there is no node: make page")
+@pytest.mark.skipif(not NODE.is_file(), reason="there is no node: make page")
 def test_every_refusal_that_the_page_can_show_has_words() -> None:
     found = _every_refusal()
     assert len(found) > 100
-    assert {text: found[text] for text in _unknown(list(found))} == {}
+    assert {text: found[text] for text in unknown(list(found))} == {}
 
 
-@pytest.mark.skipif(not _NODE.is_file(), reason="there is no node: make page")
+@pytest.mark.skipif(not NODE.is_file(), reason="there is no node: make page")
 def test_a_refusal_that_the_page_does_not_know_is_found() -> None:
-    assert _unknown(["a run is under way there", "the moon is full"]) == ["the moon is full"]
+    assert unknown(["a run is under way there", "the moon is full"]) == ["the moon is full"]

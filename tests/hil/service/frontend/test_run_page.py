@@ -94,7 +94,7 @@ def test_a_failed_run_begins_with_the_criterion_that_failed_and_leads_to_its_pla
     to(page, there, f"runs/{failed}")
     outcome = region(page, "Why it did not pass")
     expect(outcome).to_contain_text(
-        re.compile(r"Peak of the shaft torque in s: \d+.N m, allowed is ≤ 90\.0.N m\.")
+        re.compile(r"Peak of the shaft torque in s: \d+.N.m, allowed is ≤.90\.0.N.m\.")
     )
     first = page.locator("main h1, main section").nth(1)
     expect(first).to_have_attribute("aria-label", "Why it did not pass")

@@ -41,7 +41,7 @@ def test_where_no_speed_is_known_a_reset_asks_whether_the_axle_stands(
     there.post("/benches/sim/emergency-stop")  # nothing was measured since the service was started
     to(page, there, "benches/sim")
     state, asked = region(page, "State of sim"), list[str]()
-    expect(state).to_contain_text("The speed of the motor is not known: the service was started since")
+    expect(state).to_contain_text("The speed of the motor is not known: the bench is simulated, and exists")
 
     def dismiss(dialog: playwright.Dialog) -> None:
         asked.append(dialog.message)

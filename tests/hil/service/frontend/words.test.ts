@@ -30,8 +30,8 @@ test("a stop is found by its name only, and by no single letters", () => {
 });
 
 test("figures have the digits that can be read at a glance", () => {
-  assert.deepEqual([figure(373.4, "N m"), figure(-12.34), figure(0), figure(null), figure(0.5, "1")], ["373\u00a0N m", "−12.3", "0.00", "–", "0.50"]);
-  assert.equal(limitText(400, null, "N m"), "≤ 400\u00a0N m");
+  assert.deepEqual([figure(373.4, "N m"), figure(-12.34), figure(0), figure(null), figure(0.5, "1")], ["373\u00a0N\u00a0m", "−12.3", "0.00", "–", "0.50"]);
+  assert.equal(limitText(400, null, "N m"), "≤\u00a0400\u00a0N\u00a0m");
   assert.equal(limitText(null, null), "–");
 });
 test("a channel's name has its unit at its end", () => {

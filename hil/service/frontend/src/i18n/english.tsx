@@ -3,12 +3,17 @@
 import type { ComponentChildren, JSX } from "preact";
 import { LANGUAGE } from "./language.ts";
 import { withLocalMoments } from "./local-moments.ts";
-import { pausedInWords, translated } from "./phrases.ts";
+import { atThePage, linesOf, translated, withoutPlace } from "./phrases.ts";
 
 export function English({ children }: { children: ComponentChildren }): JSX.Element {
-  const said = typeof children === "string" ? children : null;
-  const shown = said === null ? children : withLocalMoments(said);
-  if (LANGUAGE === "en") return <>{typeof shown === "string" ? pausedInWords(shown) : shown}</>;
-  const known = said === null ? null : translated(said);
-  return known === null ? <span lang="en">{shown}</span> : <>{withLocalMoments(known)}</>;
+  if (typeof children !== "string") return LANGUAGE === "en" ? <>{children}</> : <span lang="en">{children}</span>;
+  return <>{linesOf(children).map((line, at) => <Line key={at} of={line} />)}</>;
+}
+
+function Line({ of }: { of: string }): JSX.Element {
+  if (!of.trim()) return <>{of}</>;
+  const line = withoutPlace(of);
+  if (LANGUAGE === "en") return <>{atThePage(withLocalMoments(line))}</>;
+  const known = translated(line);
+  return known === null ? <span lang="en">{withLocalMoments(line)}</span> : <>{withLocalMoments(known)}</>;
 }

@@ -1,20 +1,25 @@
 // Sentences that the service says again and again, known by their form: shown in the reader's language.
 
 import { wordsOf } from "../format.ts";
+import { devicePhrases } from "./device-phrases.ts";
 import { FIELD_REFUSALS } from "./field-refusals.ts";
 import { FILE_REFUSALS } from "./file-refusals.ts";
 import { FORM_WORDS } from "./form-words.ts";
+import { judgingPhrases } from "./judging-phrases.ts";
 import { HOLDS, REFUSALS } from "./refusal-phrases.ts";
-import { pausePhrases, runPhrases } from "./run-phrases.ts";
-import { personIn, wordsOf as wordsOfFirst, type Phrase, type Said } from "./said.ts";
+import { pausePhrases, PLACES, runPhrases } from "./run-phrases.ts";
+import { around, personIn, wordsOf as wordsOfFirst, type Phrase, type Said } from "./said.ts";
+import { startPhrases } from "./start-phrases.ts";
 import { t } from "./text.ts";
 
 const named = (names = ""): string => (names === "RMCU and dynos" ? t("RMCU and dynos") : names);
 
 const turning = (of: Said): Said => ({ ...of, channel: wordsOf(of["channel"] ?? "") });
 
+const words = (text: string): string => translated(text) ?? text;
+
 // The words in groups are names and figures; they stay as they are.
-const PHRASES: Phrase[] = [
+const FORMS: Phrase[] = [
   [/^drives enabled$/, () => t("drives enabled")],
   [/^(?<names>.+) answer$/, (of) => t("{names} answer", { names: named(of["names"]) })],
   [/^(?<name>.+) \((?<kind>gain|phase) stabilization\) written, read back$/, (of) => (of["kind"] === "gain" ? t("{name} (gain stabilization) written, read back", of) : t("{name} (phase stabilization) written, read back", of))],
@@ -46,12 +51,18 @@ const PHRASES: Phrase[] = [
   [/^stays in service: (?<holds>.+)$/s, ({ holds = "" }) => t("stays in service: {holds}", { holds: holds.split("; ").map((one) => wordsOfFirst(HOLDS, one) ?? one).join("; ") })],
   [/^(?<count>\d+) fields are wrong\n(?<lines>.+)$/s, ({ count = "", lines = "" }) => t("{count} fields are wrong", { count }) + lines.split("\n").map((line) => `\n  ${ofField(line.trim())}`).join("")],
   ...FIELD_REFUSALS,
-  ...runPhrases((text) => translated(text) ?? text),
+  ...runPhrases(words),
+  ...startPhrases(words),
+  ...devicePhrases(words),
+  ...judgingPhrases(words),
   ...REFUSALS,
   ...FILE_REFUSALS,
   ...FORM_WORDS,
   [/^emergency stop since (?<since>[^,]+), by (?<person>.+?): requested by .+$/, (of) => t("emergency stop since {since}, by {person}", { ...of, person: personIn(of["person"]) })],
 ];
+
+// Why something is so may be another of these sentences, whatever it is a reason of.
+const PHRASES = FORMS.map((phrase) => around(phrase, words, "reason", "why", "what", "words"));
 
 // A line of several: the field, then what is wrong with it.
 function ofField(line: string): string {
@@ -60,21 +71,42 @@ function ofField(line: string): string {
   return whole ?? (words === null ? line : `${field}: ${words}`);
 }
 
-// Null for a sentence that is none of them. Where it says first what it is about, that stays.
+// An error says what is wrong on its first line, and what to do on the next; an event has both on one.
+export const linesOf = (text: string): string[] => (/^\d+ fields are wrong\n/.test(text) ? [text] : text.split(/(\n\s*| {3})/));
+
+const KNOWN = new Map<string, string | null>(), MOST_KNOWN = 2000;
+
+// Null for a sentence that is none of them; of a table of events many are alike.
 export function translated(text: string): string | null {
-  const known = wordsOfFirst(PHRASES, text);
-  if (known !== null) return known;
-  const [, where = "", what = ""] = /^([^:\n]{1,100}): (.+)$/s.exec(text) ?? [], words = what ? wordsOfFirst(PHRASES, what) : null;
-  return words === null ? ofAll(text) : `${wordsOfFirst(PHRASES, where) ?? where}: ${words}`;
+  const known = KNOWN.get(text);
+  if (known !== undefined) return known;
+  const found = wordsOfFirst(PHRASES, text) ?? behindItsPlace(text) ?? ofAll(text);
+  if (KNOWN.size >= MOST_KNOWN) KNOWN.clear();
+  KNOWN.set(text, found);
+  return found;
 }
 
-const PAUSES = pausePhrases((text) => pausedInWords(text));
+// Where a sentence says first what it is about, that stays, unless it is known too.
+function behindItsPlace(text: string): string | null {
+  const [, where = "", what = ""] = /^([^\n;]{1,120}?): (.+)$/s.exec(text) ?? [], known = what ? translated(what) : null;
+  return known === null ? null : `${wordsOfFirst(PHRASES, where) ?? where}: ${known}`;
+}
 
-// For readers of English, too: what the engine calls held is paused here.
-export const pausedInWords = (text: string): string => wordsOfFirst(PAUSES, text) ?? text;
+const HERE = [...pausePhrases((text) => atThePage(text)), ...PLACES];
+
+// For readers of English, too: what the engine calls held is paused here, and a file of the service's machine a download.
+export function atThePage(text: string): string {
+  const found = wordsOfFirst(HERE, text);
+  if (found !== null) return found;
+  return text.includes("; ") ? text.split("; ").map(atThePage).join("; ") : text;
+}
+
+// A folder of the service's machine says nothing here; that of a run is a number, and the page is the run's. Ports stay.
+export const withoutPlace = (line: string): string => line.replace(/^\/(?!dev\/)(?:[^/:\n]+\/)*([^/:\n]+): /, (_, name: string) => (/^\d+$/.test(name) ? "" : `${name}: `));
 
 // Several sentences in one, if each of them is known.
 function ofAll(text: string): string | null {
-  const parts = text.split("; ").map((one) => (one === text ? null : translated(one)));
+  if (!text.includes("; ")) return null;
+  const parts = text.split("; ").map(translated);
   return parts.includes(null) ? null : parts.join("; ");
 }

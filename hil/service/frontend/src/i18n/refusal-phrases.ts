@@ -95,7 +95,6 @@ export const REFUSALS: Phrase[] = [
   said("look at the service's log"),
   [/^emergency stop: requested by (?<who>.+?) from (?<place>\S+?)(?: .*)?$/, (of) => t("emergency stop, requested by {who} from {place}", { ...of, who: personIn(of["who"]) })],
   [/^emergency stop: requested by (?<who>.+?)(?: over the service's API| at the service's page| on the service's page)?$/, (of) => t("emergency stop, requested by {who}", { ...of, who: personIn(of["who"]) })],
-  [/^make sure that no one is in danger; then: reset it at its service, or: (?<command>hil bench reset .+)$/, (of) => t("make sure that no one is in danger; then reset it here, or with {command}", of)],
   [/^segment '(?<segment>[^']+)' was not run$/, (of) => t("segment '{segment}' was not run", of)],
   [/^segment '(?<segment>[^']+)' was stopped after (?<seconds>\S+) s$/, (of) => t("segment '{segment}' was stopped after {seconds} s", of)],
 ];

@@ -1,15 +1,8 @@
 // What a run says of its limits, its pauses, its devices and the way to safety, known by its form.
 
 import { wordsOf } from "../format.ts";
-import { said, type Phrase, type Said } from "./said.ts";
+import { around, ofChannel, said, type Phrase, type Words } from "./said.ts";
 import { t } from "./text.ts";
-
-type Words = (text: string) => string;
-
-// One sentence about another: what stands in it is in the reader's words too, where it is known.
-const around = ([form, make]: Phrase, inner: string, words: Words): Phrase => [form, (of) => make({ ...of, [inner]: words(of[inner] ?? "") })];
-
-const ofChannel = ([form, make]: Phrase): Phrase => [form, (of: Said) => make({ ...of, channel: wordsOf(of["channel"] ?? "") })];
 
 const RESPONSES: Record<string, string> = { warn: t("warning"), pause: t("pause"), hold: t("pause"), ramp_down: t("ramp down"), trip: t("trip"), emergency_stop: t("emergency stop") };
 
@@ -24,21 +17,33 @@ export const pausePhrases = (words: Words): Phrase[] => [
   [/^(?<reached>.+): held for (?<seconds>\S+) s$/s, ({ reached = "", seconds = "" }) => t("{reached}: paused for {seconds} s", { reached: words(reached), seconds })],
 ];
 
+// What is at a place on the service's machine is a download or a button here, to readers of English too.
+export const PLACES: Phrase[] = [
+  [/^hil evidence recover .+ recovers the recording of what was measured$/, () => t("the recording of what was measured is among this run's files; once downloaded, hil evidence recover recording.mcap mends it")],
+  [/^make them with: hil report .+$/, () => t("make them from the downloaded recording: hil report recording.mcap")],
+  [/^make sure that no one is in danger, remove the cause; then: (?:reset it at its service, or: )?hil bench reset .+$/, () => t("make sure that no one is in danger and remove the cause; then reset it here")],
+  [/^make sure that no one is in danger; then: (?:reset it at its service, or: )?hil bench reset .+$/, () => t("make sure that no one is in danger; then reset it here")],
+  [/^check the file; then: (?:reset it at its service, or: )?hil bench reset .+$/, () => t("check the file on the service's machine; then reset it here")],
+];
+
 export const runPhrases = (words: Words): Phrase[] => [
   ...pausePhrases(words),
+  ...PLACES,
   // sentences around others; the widest first
-  around(said("limit tripped: {reached}"), "reached", words),
-  around(said("warning: {reached}"), "reached", words),
-  around(said("not yet: {reached}"), "reached", words),
-  around(said("being ended: {doing}"), "doing", words),
-  around(said("stopped before it began: {reason}"), "reason", words),
-  around(said("resumes after {seconds} s: {by}"), "by", words),
-  around(said("{what} (the bench loop was delayed by {seconds} s just before)"), "what", words),
-  around(said("{complaint}, while the axle ran down"), "complaint", words),
+  around(said("limit tripped: {reached}"), words, "reached"),
+  around(said("warning: {reached}"), words, "reached"),
+  around(said("not yet: {reached}"), words, "reached"),
+  around(said("being ended: {doing}"), words, "doing"),
+  around(said("stopped before it began: {reason}"), words, "reason"),
+  around(said("resumes after {seconds} s: {by}"), words, "by"),
+  around(said("{what} (the bench loop was delayed by {seconds} s just before)"), words, "what"),
+  // what may be its cause: the loop of the bench, or frames that came damaged
+  [/^(?<what>.+?) \((?<why>(?:bus '|the bench loop was delayed by ).+)\)$/s, (of) => t("{what} ({why})", of)],
+  around(said("{complaint}, while the axle ran down"), words, "complaint"),
   [/^(?<name>.+): (?<reached>.+); response: (?<response>\w+)$/, (of) => t("{name}: {reached}; response: {response}", { ...of, reached: words(of["reached"] ?? ""), response: RESPONSES[of["response"] ?? ""] ?? of["response"] ?? "" })],
   // limits and what brings a channel back within them
-  ofChannel(said("slope of {channel} reached {value}, the limit is {limit}")),
-  ofChannel(said("{channel} reached {value}, the limit is {limit}")),
+  ofChannel(said("slope of {channel} reached {value}, the limit is {limit}"), "channel"),
+  ofChannel(said("{channel} reached {value}, the limit is {limit}"), "channel"),
   said("lower the plan's torque or speed"),
   said("let it cool down and look at its cooling, or have the plan ask for less, or for less long"),
   said("look at what this channel measures, and at the plan's steps before it"),
@@ -73,8 +78,8 @@ export const runPhrases = (words: Words): Phrase[] => [
   said("check that the RMCU is powered and on this bus"),
   said("the RMCU's frames come with wrong checksums"),
   said("the RMCU's counter stands still"),
-  said("{node}: heartbeat lost"),
-  said("{node}: drive in fault"),
+  around(said("{node}: heartbeat lost"), words, "node"),
+  around(said("{node}: drive in fault"), words, "node"),
   said("no heartbeat from {nodes}"),
   said("switch the dyno controller on, check node ids in the bench file"),
   said("the rear dynos send no measured values"),
@@ -85,9 +90,9 @@ export const runPhrases = (words: Words): Phrase[] => [
   [/^check (?<device>\S+)$/, (of) => t("check {device}", of)],
   // the way to safety
   said("safe state"),
-  said("{device} did not confirm its safe state within {seconds} s"),
-  said("{device} did not confirm its safe state within {seconds} s: {reason}"),
-  said("{device} does not confirm that its torque is off"),
+  around(said("{device} did not confirm its safe state within {seconds} s"), words, "device"),
+  around(said("{device} did not confirm its safe state within {seconds} s: {reason}"), words, "device"),
+  around(said("{device} does not confirm that its torque is off"), words, "device"),
   said("cut the drives' power before you approach the bench"),
   said("the process that holds the bench"),
   said("hung: it sent nothing for {seconds} s"),
@@ -102,7 +107,6 @@ export const runPhrases = (words: Words): Phrase[] => [
   said("nothing was commanded"),
   said("safe: confirmed"),
   [/^safe: not confirmed \((?<why>.+)\)$/s, (of) => t("safe: not confirmed ({why})", { why: words(of["why"] ?? "") })],
-  said("hil evidence recover {folder} recovers the recording of what was measured"),
   said("not executed: nothing may move on a bench that has failed"),
   said("started, but not completed"),
   said("the command of this run has ended"),
@@ -111,9 +115,6 @@ export const runPhrases = (words: Words): Phrase[] => [
   said("the operator typed e"),
   said("an emergency stop may be latched here, but cannot be read"),
   said("it could NOT be latched, so nothing prevents arming the bench again: {reason}"),
-  [/^make sure that no one is in danger, remove the cause; then: reset it at its service, or: (?<command>hil bench reset .+)$/, (of) => t("make sure that no one is in danger and remove the cause; then reset it here, or with {command}", of)],
-  [/^make sure that no one is in danger, remove the cause; then: (?<command>hil bench reset .+)$/, (of) => t("make sure that no one is in danger and remove the cause; then reset it with {command}", of)],
-  [/^make sure that no one is in danger; then: (?<command>hil bench reset .+)$/, (of) => t("make sure that no one is in danger; then reset it with {command}", of)],
   // sensors at rest
   said("zero check"),
   said("{channel} cannot be read at rest: {reason}"),

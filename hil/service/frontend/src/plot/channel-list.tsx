@@ -2,7 +2,7 @@
 
 import type { JSX } from "preact";
 import { useMemo, useState } from "preact/hooks";
-import { figure, wordsOf } from "../format.ts";
+import { reading, wordsOf } from "../format.ts";
 import { t } from "../i18n/text.ts";
 import { Store, useStore } from "../store.ts";
 import type { PlotSpec } from "./layout.ts";
@@ -43,5 +43,5 @@ export function ChannelList({ channels, plots, newest, onPut }: Options): JSX.El
 
 function valueText(traces: Traces, channel: string, unit: string): string {
   const value = valueAt(traces, channel, traces.time.at(-1) ?? 0);
-  return value ? figure(value.highest, unit) : unit;
+  return value ? reading(value.highest, unit) : unit.replaceAll(" ", "\u00a0");
 }

@@ -3,7 +3,7 @@
 import type { JSX } from "preact";
 import { useState } from "preact/hooks";
 import type { LimitLine, Mark, RunView } from "../api/types.ts";
-import { figure, wordsOf } from "../format.ts";
+import { reading, wordsOf } from "../format.ts";
 import { t } from "../i18n/text.ts";
 import { useStore, type Store } from "../store.ts";
 import { roleOf } from "./frame.ts";
@@ -81,7 +81,7 @@ function Chip({ channel, role, unit, source, hover, onTake }: { channel: string;
   const at = useStore(hover);
   const traces = useStore(at === null ? source.newest : source.traces);
   const value = valueAt(traces, channel, at ?? traces.time.at(-1) ?? 0);
-  const text = !value ? "" : value.lowest === value.highest ? figure(value.lowest, unit) : at === null ? figure(value.highest, unit) : `${figure(value.lowest)} … ${figure(value.highest, unit)}`;
+  const text = !value ? "" : value.lowest === value.highest || at === null ? reading(value.highest, unit) : `${reading(value.lowest, unit, "")} … ${reading(value.highest, unit)}`;
   return (
     <span class="chip">
       {role ? <span class={`swatch ${role}`} /> : null}

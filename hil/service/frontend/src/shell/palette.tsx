@@ -101,14 +101,17 @@ const verdictIn = (words: string): string => VERDICTS.find((one) => words.toLowe
 // The service looks for a text as a whole: the others of its words are looked for in what it finds by this one.
 const longestOf = (words: string): string => words.split(/\s+/).reduce((longest, one) => (one.length > longest.length ? one : longest), "");
 
+const isNumberOfRun = (number: number): boolean => number > 0 && number < 2 ** 31 - 1;
+
 // The run of a number, and runs that have the words; without any the newest are offered.
 function useRuns(text: string): Entry[] {
   const [runs, setRuns] = useState<Entry[]>([]);
-  const words = text.trim(), number = /[0-9]+/.exec(words)?.[0] ?? "";
+  const words = text.trim(), number = Number(/[0-9]+/.exec(words)?.[0] ?? 0);
   useEffect(() => {
     const control = new AbortController();
     const find = async () => {
-      const numbered = number ? get<Run>(`/runs/${number}`, control.signal).then((run) => [run]) : null;
+      // of the list and not by its address: a number of no run is no mistake
+      const numbered = isNumberOfRun(number) ? get<Run[]>(`/runs?${new URLSearchParams({ before: String(number + 1), most: "1" })}`, control.signal).then((all) => all.filter((run) => run.id === number)) : null;
       const worded = [...new Set(words ? [words, longestOf(words)] : [])].map((one) => get<FoundRuns>(`/run-list?${new URLSearchParams({ text: one, most: "20" })}`, control.signal).then(({ runs: all }) => all.map(({ run }) => run)));
       const verdict = verdictIn(words), judged = verdict ? get<FoundRuns>(`/run-list?${new URLSearchParams({ verdict, most: "20" })}`, control.signal).then(({ runs: all }) => all.map(({ run }) => run)) : null;
       const asked = [numbered, ...worded, judged, get<Run[]>("/runs?most=5", control.signal)].map((one) => one?.catch(() => []) ?? []);

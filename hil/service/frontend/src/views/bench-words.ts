@@ -2,6 +2,7 @@
 
 import type { Bench, Run } from "../api/types.ts";
 import { figure, nearMoment, roughly } from "../format.ts";
+import { translated } from "../i18n/phrases.ts";
 import { t } from "../i18n/text.ts";
 import type { BenchState } from "../live.ts";
 
@@ -103,6 +104,7 @@ export function resetText(next: Run | null | undefined): string {
 // The speed that was measured last before or after a stop, beside what resets it.
 export function lastSpeedText(bench: Bench, nowMs: number): string {
   const last = bench.last_speed;
+  if (!last && bench.speed_unknown) return t("The speed of the motor is not known: {why}. Look whether the axle stands.", { why: translated(bench.speed_unknown) ?? bench.speed_unknown });
   if (!last) return t("The speed of the motor is not known: the service was started since, or nothing was measured. Look whether the axle stands.");
   const values = { time: roughly(Math.max(0, (nowMs - Date.parse(last.at)) / 1000)), speed: figure(Math.abs(last.speed_rad_s), "rad/s") };
   return last.turns ? t("At the last look, {time} ago, the motor turned at {speed}.", values) : t("At the last look, {time} ago, the motor stood.", values);

@@ -15,6 +15,7 @@ import { Badge, linkTo, Moment, Scroll, Section, verdictOf } from "../ui/parts.t
 import { Banner } from "./bench-banner.tsx";
 import { Criteria } from "./criteria.tsx";
 import { Queue } from "./queue.tsx";
+import { valuesOf } from "./runs/run-values.ts";
 import { StartPlan } from "./plans/start-plan.tsx";
 import { Handovers } from "./team/handovers.tsx";
 import { Reservations } from "./team/reservations.tsx";
@@ -77,7 +78,7 @@ function Latest({ bench, over }: { bench: string; over: string }): JSX.Element {
               <tbody>
                 {runs.map((run) => (
                   <tr key={run.id}>
-                    <td class="number"><a href={to.run(run.id)}>{run.id}</a></td><th scope="row">{run.title || run.plan}{run.reason ? <span class="reason"><English>{run.reason.split("\n")[0]}</English></span> : null}</th>
+                    <td class="number"><a href={to.run(run.id)}>{run.id}</a></td><th scope="row">{run.title || run.plan}{valuesOf(run) ? <span class="reason">{valuesOf(run)}</span> : null}{run.reason ? <span class="reason"><English>{run.reason.split("\n")[0]}</English></span> : null}</th>
                     <td><Badge kind={verdictOf(run)} />{run.safe_state === "not_confirmed" ? <span class="bad"> {t("NOT CONFIRMED SAFE")}</span> : null}</td><td><Moment at={run.ended_at} /></td><td>{run.requested_by}</td>
                   </tr>
                 ))}

@@ -2,7 +2,7 @@
 
 import type { JSX } from "preact";
 import type { Comparison } from "../api/types.ts";
-import { figure, joined } from "../format.ts";
+import { figure, figuresIn, joined } from "../format.ts";
 import { t } from "../i18n/text.ts";
 import { Badge, Scroll, Section } from "../ui/parts.tsx";
 import { changeOf, changeText } from "./compare-changes.ts";
@@ -24,7 +24,7 @@ export function ComparedCriteria({ pairs }: { pairs: Comparison[] }): JSX.Elemen
           </thead>
           <tbody>
             {rows.map((row) => (
-              <tr key={keyOf(row)}><th scope="row"><CriterionName of={row} /></th><td class="number">{!row.limit ? "–" : row.limit.startsWith("<") ? row.limit : joined(row.limit, row.unit)}</td>
+              <tr key={keyOf(row)}><th scope="row"><CriterionName of={row} /></th><td class="number">{!row.limit ? "–" : row.limit.startsWith("<") ? row.limit : joined(figuresIn(row.limit.replace(/-(?=\d)/g, "−")), row.unit)}</td>
                 <td class="number"><Value value={row.values[0]} verdict={row.verdicts[0]} unit={row.unit} /></td>
                 {pairs.map((pair) => <Other key={pair.other.id} row={pair.criteria.find((one) => keyOf(one) === keyOf(row))} />)}
               </tr>

@@ -2,7 +2,7 @@
 
 import type { JSX } from "preact";
 import type { Comparison } from "../api/types.ts";
-import { joined } from "../format.ts";
+import { figuresIn, joined } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { t, tn } from "../i18n/text.ts";
 import { kindInWords } from "../ui/kinds.ts";
@@ -25,13 +25,18 @@ export function Lead({ pair }: { pair: Comparison }): JSX.Element {
   );
 }
 
+// A run's value of a variable stands in its plan as the default.
+const nameOf = (key: string): string => /^variables\.(\w+)\.default$/.exec(key)?.[1] ?? key;
+
 // What is done otherwise, in a sentence for each value; what is said here is not in the table below.
 function PlanDiffers({ pair }: { pair: Comparison }): JSX.Element | null {
   const { other, plan_summary: ones, plan_more: left } = pair;
   if (!ones.length) return null;
-  const text = ({ name, first, other: its, unit }: Difference): string =>
-    first === NOTHING ? t("{what} is only in run {run}", { what: name, run: other.id }) : its === NOTHING ? t("{what} is not in run {run}", { what: name, run: other.id })
-      : t("{what} {other} instead of {first}", { what: name, other: its, first: joined(first, unit ?? "") });
+  const text = ({ name: of, first, other: its, unit }: Difference): string => {
+    const name = nameOf(of);
+    return first === NOTHING ? t("{what} is only in run {run}", { what: name, run: other.id }) : its === NOTHING ? t("{what} is not in run {run}", { what: name, run: other.id })
+      : t("{what} {other} instead of {first}", { what: name, other: figuresIn(its), first: joined(figuresIn(first), unit ?? "") });
+  };
   return (
     <>
       <p>{t("The plan of run {run} differs:", { run: other.id })}</p>

@@ -3,7 +3,7 @@
 import type { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { to } from "../addresses.ts";
-import { figure, limitText, roughly, wordsOf } from "../format.ts";
+import { figure, limitText, reading, roughly, wordsOf } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { t } from "../i18n/text.ts";
 import { useLive, type BenchState, type Live } from "../live.ts";
@@ -72,7 +72,7 @@ function Dials({ live, state }: { live: Live; state: BenchState | null }): JSX.E
         const limit = state?.bench.limits[channel], value = values[channel] ?? null, unit = state?.bench.units[channel] ?? "";
         return (
           <div key={channel} class={limit && value !== null && Math.abs(value) > 0.9 * limit ? "near" : ""}>
-            <dt>{wordsOf(channel)}</dt><dd>{figure(state?.running ? value : null)} <small>{unit}</small></dd>
+            <dt>{wordsOf(channel)}</dt><dd>{reading(state?.running ? value : null, unit, "")} <small>{unit}</small></dd>
             <dd class="quiet">{limit ? t("limit ±{limit}", { limit: figure(limit, unit) }) : "\u00a0"}</dd>
           </div>
         );

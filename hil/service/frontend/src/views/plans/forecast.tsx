@@ -4,7 +4,7 @@ import type { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { ask, Refused } from "../../api/client.ts";
 import type { Forecast } from "../../api/types.ts";
-import { figure, percent } from "../../format.ts";
+import { figure, percent, unitIn, wordsOf } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
 import { t } from "../../i18n/text.ts";
 import { Scroll } from "../../ui/parts.tsx";
@@ -72,7 +72,7 @@ export function ForecastShown({ of: { forecast, error, wrong }, criteria = false
           <thead><tr><th scope="col">{t("predicted")}</th><th scope="col" class="number">{t("peak")}</th><th scope="col" class="number">{t("limit")}</th><th scope="col" class="number">{t("used")}</th></tr></thead>
           <tbody>
             {Object.entries(forecast.predicted).map(([name, { value, limit }]) => (
-              <tr key={name}><th scope="row">{name}</th><td class={value > limit ? "number bad" : "number"}>{figure(value)}</td><td class="number">{figure(limit)}</td><td class="number">{percent(value / limit)}</td></tr>
+              <tr key={name}><th scope="row" title={name}>{wordsOf(name)}</th><td class={value > limit ? "number bad" : "number"}>{figure(value, unitIn(name))}</td><td class="number">{figure(limit, unitIn(name))}</td><td class="number">{percent(value / limit)}</td></tr>
             ))}
           </tbody>
         </table>

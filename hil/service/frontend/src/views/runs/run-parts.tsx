@@ -6,7 +6,7 @@ import type { Run, RunView } from "../../api/types.ts";
 import { fixed, joined } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
 import { t, tn, tx } from "../../i18n/text.ts";
-import { eventInWords, kindInWords } from "../../ui/kinds.ts";
+import { eventInWords, isKind, kindInWords } from "../../ui/kinds.ts";
 import { FileLink, Scroll, Section } from "../../ui/parts.tsx";
 import { look } from "./places.ts";
 
@@ -22,12 +22,12 @@ export function Happenings({ view }: { view: RunView }): JSX.Element | null {
     <Section title={t("Segments and events")} label="events">
       <Scroll label={t("Segments and events")}>
         <table>
-          <thead><tr><th scope="col" class="number">{t("time")}</th><th scope="col">{t("kind")}</th><th scope="col">{t("name")}</th><th scope="col">{t("what")}</th></tr></thead>
+          <thead><tr><th scope="col" class="number">{t("time")}</th><th scope="col" class="folds">{t("kind")}</th><th scope="col">{t("name")}</th><th scope="col">{t("what")}</th></tr></thead>
           <tbody>
             {marks.map((mark, at) => (
               <tr key={at}>
                 <td class="number"><button type="button" class="plain" aria-label={t("Show {mark} at {start_s} s", { mark: mark.name, start_s: fixed(mark.start_s, 2) })} onClick={() => look(mark.end_s != null ? { from: mark.start_s, to: mark.end_s } : { from: mark.start_s - AROUND_S, to: mark.start_s + AROUND_S })}>{joined(fixed(mark.start_s, 2), "s")}</button></td>
-                <td>{kindInWords(mark.kind)}</td><td>{mark.kind === "segment" ? mark.name : eventInWords(mark.name)}</td><td><English>{mark.text}</English></td>
+                <td class="folds">{kindInWords(mark.kind)}</td><td>{mark.kind === "segment" ? mark.name : eventInWords(mark.name)}</td><td>{mark.kind === "segment" && isKind(mark.text) ? kindInWords(mark.text) : <English>{mark.text}</English>}</td>
               </tr>
             ))}
           </tbody>

@@ -10,16 +10,19 @@ import { t } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { colour, coloured } from "../../theme.ts";
 
+const WHOLE = [1, 2, 5].flatMap((one) => [0, 1, 2, 3, 4, 5].map((power) => one * 10 ** power)).sort((one, other) => one - other);
+
 export function TrendPlot({ trend, label }: { trend: Trend; label: string }): JSX.Element {
   const place = useRef<HTMLDivElement>(null);
   const points = useMemo(() => trend.points.filter((point) => point.value !== null), [trend]);
   useEffect(() => {
     const element = place.current as HTMLDivElement;
     const values = [...points.map((point) => point.value as number), ...levelsOf(trend).map(({ value }) => value)];
+    const runs = points.length ? points.map((point) => point.run) : [0]; // numbers of runs begin with 1, and have no fractions
     const plot = new uPlot({
       width: Math.max(200, element.clientWidth), height: HEIGHT, legend: { show: false },
-      scales: { x: { time: false, range: (_, low, high) => [(low ?? 0) - 1, (high ?? 1) + 1] }, y: { range: () => roomy(Math.min(...values), Math.max(...values)) } },
-      axes: [axis({ space: 60, size: 28, unit: t("run") }), axis({ size: 56, unit: trend.unit })],
+      scales: { x: { time: false, range: () => [Math.max(0, Math.min(...runs) - 1), Math.max(1, ...runs) + 1] }, y: { range: () => roomy(Math.min(...values), Math.max(...values)) } },
+      axes: [axis({ space: 60, size: 28, unit: t("run"), incrs: WHOLE }), axis({ size: 56, unit: trend.unit })],
       series: [{}, { stroke: () => colour("series-reference"), width: 1.2, points: { size: 7, fill: () => colour("series-gain"), stroke: () => colour("series-gain") } }],
       cursor: { drag: { x: false, y: false } },
       hooks: { draw: [(made) => decorate(made, trend, points)], ready: [(made) => made.over.addEventListener("click", () => open(made, points))] },
