@@ -83,12 +83,19 @@ class Scene:
         return orders_of(self.problem, self.point, side) if self.point else []
 
 
-def promises(problem: Problem, at: Linearised) -> list[Promise]:
-    """All sizes of every effect that may be added to a point, each with what it promises."""
+def promises(
+    problem: Problem, at: Linearised, asked: Callable[[EffectUse], bool] = lambda _: True
+) -> list[Promise]:
+    """All sizes of every effect that may be added to a point, each with what it promises.
+
+    Args:
+        asked: which effects are looked at; all of them when left out.
+    """
     hypothesis = at.point.hypothesis
     project = _Projection(problem, at)
     found: list[Promise] = []
-    for some in _together(_asked(Scene(problem, hypothesis, at.point))):
+    joining = _asked(Scene(problem, hypothesis, at.point))
+    for some in _together(one for one in joining if asked(one[0][0])):
         alone = project.products([hypothesis.with_term(use) for uses, _ in some for use in uses])
         first = 0
         for uses, probe in some:

@@ -121,7 +121,7 @@ def _grown(
     rarer = [one for one in suggested if not is_loss(one[0].terms[-1])]
     grown = _best_of(done, best, losses, show)
     if grown is not None and done.score(grown) > done.score(best):
-        grown = _paired(done, grown, show)
+        grown = _among_losses(done, grown, show)
         had, has = (done.problem.mean_square(one.point.errors) for one in (best, grown))
         if remains(had, has, done.problem.noise**2, 1.0) <= HALF:
             brought = HALF * (grown.log_likelihood - best.log_likelihood)
@@ -130,17 +130,31 @@ def _grown(
     return max((one for one in (grown, others) if one is not None), key=done.score, default=None)
 
 
-def _paired(done: Candidates, grown: Candidate, show: Callable[[str], None]) -> Candidate:
-    """The first loss with another one beside it, where both are the likelier: dry and viscous go together."""
+def _among_losses(done: Candidates, grown: Candidate, show: Callable[[str], None]) -> Candidate:
+    """The first loss, or each other one in its place or beside it, where that is likelier.
+
+    One loss settles numbers from which another can be seen: dry friction, which may hold an axle, is found
+    where a rolling resistance has it turn at the right speed. Dry and viscous losses go together.
+    """
     if len(grown.names) > 1 or not done.may_gain(grown):
         return grown
-    pairs = [grown]
-    for one in [one for one in done.found.values() if len(one.names) == 1 and one.names != grown.names]:
+    fewer = grown.point.hypothesis.without(0)
+    near, problem = done.at(fewer, grown), done.weighed_as(grown)
+    found = promises(problem, linearised(problem, near.point), is_loss)
+    best = grown
+    for promise, *_ in best_by_name(found, 1):
+        if promise.label not in grown.names:
+            show(promise.label)
+            instead = done.fitted(fewer.with_term(promise.use), near)
+            best = max(best, _opened(done, instead, show), key=done.score)
+    pairs: list[Candidate] = []
+    for one in [one for one in done.found.values() if len(one.names) == 1 and one.names != best.names]:
         other, opened = one.point.hypothesis.terms[0], one.point.hypothesis.opened[0]
         if is_loss(other):
-            show(" + ".join([*grown.names, *one.names]))
-            pairs.append(done.fitted(grown.point.hypothesis.with_term(other, opened), grown))
-    return max(pairs, key=done.score)
+            show(" + ".join([*best.names, *one.names]))
+            pairs.append(done.fitted(best.point.hypothesis.with_term(other, opened), best, _RIVALS))
+    ended = [done.fitted(one.point.hypothesis, one) for one in _best_of_each_name(done, pairs)[:1]]
+    return max((best, *ended), key=done.score)
 
 
 def is_loss(use: EffectUse) -> bool:

@@ -28,7 +28,7 @@ from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains, weight
 from hil.analysis.missing_effects._orders import PERIODS, turns
 from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Replay, Verdict
 from hil.analysis.missing_effects._problem import Problem
-from hil.analysis.missing_effects._search import HALF
+from hil.analysis.missing_effects._search import HALF, is_loss
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
@@ -61,13 +61,12 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     """The outcome of a search."""
     done = of.done
     likeliest = done.best
-    if len(likeliest.names) > 1:  # a step has compared single names
-        _swapped(done, likeliest)
+    if len(likeliest.names) > 1 and not done.problem.is_noise(likeliest.point.errors):
+        _swapped(done, likeliest, is_loss)
     at = linearised(done.weighed_as(done.best, once=True), done.best.point)
     as_the_base = as_the_base_has(done, done.best) if _may_be_off(of, at) else frozenset[str]()
     best, at, shares = _worth_telling(of, done.best)
-    if best is not likeliest or len(best.names) == 1:
-        _swapped(done, best)
+    _swapped(done, best)
     candidates = list(done.found.values())
     values = done.problem.powers(best.point.errors, once=True).values(done.problem.noise)
     weights = _weights(done.problem, candidates, values)
@@ -161,7 +160,7 @@ def _is_line(done: Candidates, at: Linearised, index: int) -> bool:
     return sure and float(use.values["order"]) * whole >= PERIODS
 
 
-def _swapped(done: Candidates, best: Candidate) -> None:
+def _swapped(done: Candidates, best: Candidate, asked: Callable[[EffectUse], bool] = lambda _: True) -> None:
     """Far from noise, fit the best hypothesis with each name in turn replaced by others.
 
     A forward search finds a name beside those before it; names that could stand in its place must be given
@@ -174,14 +173,17 @@ def _swapped(done: Candidates, best: Candidate) -> None:
             if one.names != best.names:
                 done.fitted(one.point.hypothesis, one)
         return
-    uses = {label: one for one in pool for label in one.names}
-    for index in range(len(best.names)):
-        rivals = [label for label in uses if label not in best.names][:_RIVALS]
+    terms: dict[str, tuple[EffectUse, frozenset[str]]] = {}
+    for one in pool:
+        for label, use, opened in zip(
+            one.names, one.point.hypothesis.terms, one.point.hypothesis.opened, strict=True
+        ):
+            if asked(use) and label not in best.names:
+                terms.setdefault(label, (use, opened))
+    for index, use in enumerate(best.point.hypothesis.terms):
         fewer = best.point.hypothesis.without(index)
-        for label in rivals:
-            other = uses[label].point.hypothesis
-            at = other.names.index(label)
-            done.fitted(fewer.with_term(other.terms[at], other.opened[at]), best)
+        for rival in [*terms.values()][:_RIVALS] if asked(use) else ():
+            done.fitted(fewer.with_term(*rival), best)
 
 
 def _without(done: Candidates, best: Candidate, index: int) -> Candidate:
@@ -202,10 +204,11 @@ def _named(
     label = best.names[index]
     alike = rivals.get(label, ())
     held = _held(label, candidates, weights, *alike)
+    law = 0.0 if _is_linear(use) else _LAW  # nor are its numbers known better
     errors = {
-        name: at.standard_error(index, name)
-        for name in use.values
-        if np.isfinite(at.standard_error(index, name))
+        name: float(np.hypot(error, law * float(value)))
+        for name, value in use.values.items()
+        if np.isfinite(error := at.standard_error(index, name))
     }
     names = [part for name in (label, *alike) for part in name.split(" + ")]
     test = "; or ".join(dict.fromkeys(EFFECTS[name.split("(")[0]].shown_by for name in names))
