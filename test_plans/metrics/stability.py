@@ -14,7 +14,7 @@ from test_plans.conductor import PlannedSegment
 from test_plans.metrics import _lines
 from test_plans.metrics._metric import ChannelName, Metric, NoValueError
 from test_plans.metrics._orders import orders_removed
-from test_plans.metrics._samples import cut, evenly, no_step
+from test_plans.metrics._samples import cut, no_step
 from test_plans.metrics._window import WindowMetric
 
 _WHEEL = "wheel_speed_rad_s"
@@ -144,7 +144,8 @@ def instability(recording: Recording, segment: Segment) -> str:
     """What shows that the loop was not stable when a segment was cut short, in words; '' if nothing does.
 
     Either the request lay at its limit, or against what was asked, for a fifth of the second half; or T_s
-    swung by more than a tenth of the step over three periods and more, without decay, up to the end.
+    swung by more than a tenth of the step over three periods and more, without decay, up to the end, without
+    the orders of the wheel that the bench file declares.
     """
     if segment.quantity == "motor_torque":
         return ""  # no loop: what rings is the axle
@@ -153,12 +154,11 @@ def instability(recording: Recording, segment: Segment) -> str:
     try:
         share = StabilityTorqueRequest().compute(recording, segment)
         start_s = max(segment.step_s, segment.end_s - _LOOKED_AT_S)
-        time, values = cut(recording, segment, "shaft_torque_nm", start_s, segment.end_s, with_end=False)
+        spacing_s, even = orders_removed(recording, segment, "shaft_torque_nm", start_s, segment.end_s)
     except (NoValueError, HilError):
         return ""
     if segment.end_s - segment.step_s >= _LEAST_S and share >= _MOST_OF_IT:
         return f"T_m* is at its limit, or opposite to the request, for {100 * share:.0f} % of the time"
-    spacing_s, even = evenly(time, values)
     found = _lines.swings(even, spacing_s)
     size = abs(segment.reference_after - segment.reference_before)
     if found is None or found.last < _ASKED * size or found.last < _lines.DECAYS * found.first:

@@ -131,3 +131,14 @@ def test_a_loop_that_grew_until_it_was_stopped_is_told_from_a_single_peak() -> N
     }
     assert "oscillates at 20 Hz" in found["growing"]
     assert found["peak"] == ""
+
+
+def test_an_order_of_the_wheel_is_no_loop_that_grew_when_a_run_is_ended() -> None:
+    """A person ended a run: the ripple of a joint was told as a loop that is not stable."""
+    ended = LIMITED.model_copy(update={"end_s": STEP.step_s + 7.0, "complete": False, "wheel_orders": (3.0,)})
+    torque = 326.0 + 60.0 * np.sin(3 * ANGLE)
+    request = np.full(len(TIME), 40.0)
+    channels = {"shaft_torque_nm": torque, "motor_torque_ref_nm": request, "wheel_speed_rad_s": SPEED}
+    assert instability(recording_of(TIME, **channels), ended) == ""
+    undeclared = ended.model_copy(update={"wheel_orders": ()})
+    assert "does not decay" in instability(recording_of(TIME, **channels), undeclared)

@@ -49,6 +49,9 @@ export function digitsOf(step: number): number {
   return digits;
 }
 
+// A value that a person set: as it was typed.
+export const exact = (value: number): string => formatOf({ maximumSignificantDigits: 12, useGrouping: false }).format(value).replace("-", "−");
+
 export const percent = (share: number, digits = 0): string =>
   formatOf({ style: "percent", minimumFractionDigits: digits, maximumFractionDigits: digits }).format(share).replace("-", "−");
 

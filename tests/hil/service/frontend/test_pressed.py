@@ -36,6 +36,19 @@ def test_a_double_click_queues_one_run_and_leaves_one_note(page: playwright.Page
     assert len(there.get("/runs/1/notes")["notes"]) == 1
 
 
+def test_a_click_on_the_stop_behind_the_palette_stops(page: playwright.Page, there: Served) -> None:
+    """The window took the click and closed, and the axle went on."""
+    to(page, there, "benches/sim")
+    box = page.locator("button.stop").bounding_box()
+    assert box is not None
+    page.keyboard.press("Control+k")
+    expect(page.get_by_role("dialog")).to_be_visible()
+    with page.expect_response("**/emergency-stop"):
+        page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    assert there.get("/benches/sim")["state"] == "emergency_stop"
+
+
 def test_a_stop_that_nobody_takes_is_not_delivered(page: playwright.Page, there: Served) -> None:
     to(page, there, "benches/sim")
     page.route("**/emergency-stop", lambda _: None)  # never answered
@@ -46,7 +59,7 @@ def test_a_stop_that_nobody_takes_is_not_delivered(page: playwright.Page, there:
     expect(notice).to_contain_text(re.compile("does not answer. It is tried again until .* Use the stop at"))
 
 
-def test_a_stop_that_nobody_has_taken_in_half_a_minute_is_not_tried_any_longer(
+def test_a_stop_that_nobody_has_taken_in_ten_minutes_is_not_tried_any_longer(
     page: playwright.Page, there: Served
 ) -> None:
     page.clock.install()
@@ -57,6 +70,8 @@ def test_a_stop_that_nobody_has_taken_in_half_a_minute_is_not_tried_any_longer(
     page.clock.run_for(1100)
     expect(notice).to_contain_text("It is tried again until")
     page.clock.run_for(31_000)
+    expect(notice).to_contain_text("It is tried again until")
+    page.clock.run_for(570_000)
     expect(notice).to_contain_text(
         re.compile("did not answer. It has not been tried since .* Use the stop at")
     )

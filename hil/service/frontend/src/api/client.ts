@@ -91,8 +91,9 @@ export const getText = async (path: string, signal?: AbortSignal): Promise<strin
 export const getTagged = (path: string, signal?: AbortSignal): Promise<Answered> => fetched("GET", path, undefined, signal);
 export const fileUrl = (run: number, name: string): string => `${API}/runs/${run}/files/${encodeURIComponent(name)}`;
 
-export const STOP_MS = 30_000; // how long a stop is tried
-const AGAIN_MS = 50;
+export const STOP_MS = 600_000; // how long a stop is tried: a service that is started again must not go on with its queue
+const AGAIN_MS = 50, LATER_MS = 500; // from one try to the next, for half a minute and then
+const SOON_MS = 30_000;
 const AWAY = [502, 503, 504]; // a proxy's, while the service behind it is away
 let stopUrl = "";
 
@@ -124,13 +125,14 @@ async function byStopPost(path: string, signal: AbortSignal): Promise<void> {
 }
 
 async function insist(way: () => Promise<unknown>, late: AbortSignal): Promise<void> {
+  const began = Date.now();
   for (;;) {
     try {
       await way();
       return;
     } catch (error) {
       if ((error instanceof Refused && error.status && !AWAY.includes(error.status)) || late.aborted) throw error;
-      await new Promise((resolve) => setTimeout(resolve, AGAIN_MS));
+      await new Promise((resolve) => setTimeout(resolve, Date.now() - began < SOON_MS ? AGAIN_MS : LATER_MS));
     }
   }
 }

@@ -14,7 +14,7 @@ import { runInWords } from "../ui/run-kind.ts";
 import { valuesOf } from "../views/runs/run-values.ts";
 import { found, type Entry } from "./matching.ts";
 import { commands } from "./commands.ts";
-import { benchInSight } from "./stop.tsx";
+import { benchInSight, pressStopAt } from "./stop.tsx";
 
 export const paletteOpen = new Store(false);
 const MOST = 12;
@@ -53,7 +53,7 @@ function Open(): JSX.Element {
     event.preventDefault();
   };
   return (
-    <dialog ref={dialog} class="palette" aria-label={t("Find")} onClose={close} onClick={(event) => { if (event.target === dialog.current) close(); }}>
+    <dialog ref={dialog} class="palette" aria-label={t("Find")} onClose={close} onClick={(event) => { if (event.target === dialog.current) { close(); pressStopAt(event.clientX, event.clientY); } }}>
       <input
         type="text" role="combobox" aria-expanded="true" aria-controls="palette-list" aria-autocomplete="list" aria-activedescendant={`entry-${at}`}
         aria-label={t("Find a plan, run, bench, model or command")} placeholder={t("Plan, run, bench, model or command")} autocomplete="off" spellcheck={false}

@@ -96,7 +96,7 @@ function Row({ found, withValue, chosen, onChoose }: { found: FoundRun; withValu
       {withValue ? <td class={`number ${found.criterion_verdict === "fail" ? "bad" : ""}`}>{figure(found.value, found.unit)}<span class="reason">{limitText(found.upper, found.lower)}</span></td> : null}
       <td><a href={to.bench(run.bench)}>{run.bench}</a></td>
       <td>{run.dut || "–"}</td>
-      <td>{run.ended_at ? <Moment at={run.ended_at} /> : <Moment at={run.queued_at} />}</td>
+      <td>{run.ended_at ? <Moment at={run.ended_at} /> : <span class="quiet">{t("queued")} <Moment at={run.queued_at} /></span>}</td>
       <td>{run.requested_by}</td>
     </tr>
   );
