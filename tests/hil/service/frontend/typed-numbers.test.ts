@@ -2,23 +2,30 @@
 
 import assert from "node:assert/strict";
 import test from "node:test";
-import { numberIn, pointed, whyNoNumber } from "../../../../hil/service/frontend/src/ui/typed-numbers.ts";
+import { numberIn, POINTED, pointed, whyNoNumber } from "../../../../hil/service/frontend/src/ui/typed-numbers.ts";
 import { areUsual, valuesOf, wrongIn } from "../../../../hil/service/frontend/src/views/plans/typed-values.ts";
 import type { Plan } from "../../../../hil/service/frontend/src/api/types.ts";
 
 test("a decimal comma is a decimal point", () => {
-  assert.deepEqual(["20,5", "-0,125", ",5", "5,", "1,5e3", "２０．５", "−3"].map((one) => pointed(one, true)), ["20.5", "-0.125", "0.5", "5", "1.5e3", "20.5", "-3"]);
+  assert.deepEqual(["20,5", "-0,125", ",5", "5,", "1,5e3", "２０．５", "−3"].map((one) => pointed(one, "en")), ["20.5", "-0.125", "0.5", "5", "1.5e3", "20.5", "-3"]);
   assert.equal(numberIn("20,5"), 20.5);
 });
 
 test("a comma that may group digits is refused where readers group so, and is decimal elsewhere", () => {
-  assert.equal(pointed("1,200", true), null);
-  assert.equal(pointed("1,200", false), "1.200");
-  assert.equal(whyNoNumber("1,200", {}, true), "\"1,200\" may be two numbers: write 1.200 or 1200.");
+  assert.equal(pointed("1,200", "en"), null);
+  assert.equal(pointed("1,200", "de"), "1.200");
+  assert.equal(whyNoNumber("1,200", {}, "en"), "\"1,200\" may be two numbers: write 1.200 or 1200.");
+});
+
+test("a point that may group digits is refused where readers group so, unless a field was given it", () => {
+  assert.equal(pointed("200.000", "de"), null);
+  assert.equal(whyNoNumber("1.250", {}, "de"), "\"1.250\" may be two numbers: write 1,250 or 1250.");
+  assert.deepEqual(["0.125", "20.5", "8.7144"].map((one) => pointed(one, "de")), ["0.125", "20.5", "8.7144"]);
+  assert.equal(whyNoNumber("8.714", {}, POINTED), "");
 });
 
 test("what is no number is refused", () => {
-  for (const typed of ["", "-", "1.234,5", "1,234.5", "20 5", "abc", "0x10", "Infinity", "1e999"]) assert.equal(pointed(typed, true), null, typed);
+  for (const typed of ["", "-", "1.234,5", "1,234.5", "20 5", "abc", "0x10", "Infinity", "1e999"]) assert.equal(pointed(typed, "en"), null, typed);
   assert.match(whyNoNumber("1.234,5", {}), /no number/);
   assert.match(whyNoNumber("2.5", { whole: true }), /whole/);
   assert.equal(whyNoNumber("", {}), "");

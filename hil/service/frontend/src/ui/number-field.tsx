@@ -2,7 +2,7 @@
 
 import type { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
-import { pointed, whyNoNumber, type Bounds } from "./typed-numbers.ts";
+import { POINTED, pointed, whyNoNumber, type Bounds } from "./typed-numbers.ts";
 
 interface Options extends Bounds {
   value: string;
@@ -17,7 +17,7 @@ interface Options extends Bounds {
 
 export function NumberInput({ value, onText, rested = false, describedBy, min, max, whole, required = false, ...more }: Options): JSX.Element {
   const [typed, setTyped] = useState<string | null>(null), given = useRef([value, value]); // what the parent was given last
-  const text = typed ?? value, why = whyNoNumber(text, { min, max, whole: whole ?? false, required });
+  const text = typed ?? value, why = whyNoNumber(text, { min, max, whole: whole ?? false, required }, typed === null ? POINTED : undefined);
   const give = (now: string) => { const read = pointed(now) ?? ""; given.current = [read, now]; onText(read, now); };
   useEffect(() => { // a value that is not what was typed here: a slider's, or all was cleared
     if (given.current.some((one) => one === value || Number(one || NaN) === Number(value || NaN))) return;

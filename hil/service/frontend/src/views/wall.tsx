@@ -1,7 +1,7 @@
 // The wall of a control room: all benches, or one, to be read from five metres. It takes no input and follows by itself.
 
 import type { JSX } from "preact";
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useMemo, useState } from "preact/hooks";
 import { to } from "../addresses.ts";
 import { clockTime, moment, roughly } from "../format.ts";
 import { English } from "../i18n/english.tsx";
@@ -40,7 +40,8 @@ const useBegan = (): number => useState(() => performance.now())[0];
 const lettersOf = (word: string): number => [...word].reduce((sum, letter) => sum + (letter > "\u2e7f" ? 1.8 : 1), 0);
 
 function Card({ of: { bench, running, queue, latest }, nowMs, alone }: { of: Shown; nowMs: number; alone: boolean }): JSX.Element {
-  const left = leftOf(bench, running, nowMs);
+  const seenMs = useMemo(() => nowMs, [running?.id, running?.share]); // of a service that is away nothing is newer
+  const left = leftOf(bench, running, seenMs);
   const next = nextIn(queue), has = running?.requested_by || holderOf(bench);
   return (
     <li class={`bench ${lookOf(bench, running)}`}>

@@ -2,7 +2,7 @@
 
 import type { Plan } from "../../api/types.ts";
 import { t } from "../../i18n/text.ts";
-import { numberIn, whyNoNumber, type Bounds } from "../../ui/typed-numbers.ts";
+import { POINTED, numberIn, whyNoNumber, type Bounds } from "../../ui/typed-numbers.ts";
 
 export type Variable = Plan["variables"][string];
 
@@ -18,7 +18,7 @@ export const boundsOf = ({ lower, upper }: Variable): Bounds => ({ min: lower ??
 // The first value that is not taken, and why; '' if all are.
 export function wrongIn(plan: Plan | null | undefined, texts: Texts): string {
   for (const [name, variable] of Object.entries(plan?.variables ?? {})) {
-    const why = whyNoNumber(texts[name] ?? String(variable.default), boundsOf(variable));
+    const why = whyNoNumber(texts[name] ?? String(variable.default), boundsOf(variable), POINTED);
     if (why) return `${labelOf(name, variable)}: ${why}`;
   }
   return "";
