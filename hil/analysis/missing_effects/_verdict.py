@@ -271,7 +271,8 @@ def _alike(
     """
     problem = done.weighed_as(best, once=True)
     found: dict[str, tuple[str, ...]] = {}
-    least = float(weights[candidates.index(best)]) * np.exp(-ALIKE)
+    own = [weight for one, weight in zip(candidates, weights, strict=True) if one.names == best.names]
+    least = max(own, default=0.0) * np.exp(-ALIKE)
     held = {name: _held(name, candidates, weights) for name in best.names}
     for one, weight in zip(candidates, weights, strict=True):
         lost, new = {*best.names} - {*one.names}, {*one.names} - {*best.names}
