@@ -56,6 +56,21 @@ async def start_process(
     return process
 
 
+async def output_of(process: asyncio.subprocess.Process, within_s: float) -> tuple[bytes, bytes]:
+    """What a process prints on both streams; it is killed if it is late, or if no one waits any longer.
+
+    Raises:
+        TimeoutError: it is late.
+    """
+    try:
+        return await asyncio.wait_for(process.communicate(), within_s)
+    except BaseException:
+        with contextlib.suppress(ProcessLookupError):
+            process.kill()
+        await process.wait()
+        raise
+
+
 T = TypeVar("T")
 _AGAIN_S = 0.5
 

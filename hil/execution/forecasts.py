@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import json
 import tempfile
 from collections import OrderedDict
@@ -15,7 +14,7 @@ from hil.app.worker.job import JOB, write_request
 from hil.core.errors import BadInputError, BenchError
 from hil.core.files import read_bytes
 from hil.engine import BenchFile
-from hil.execution.background import FORECAST_BYTES, start_process
+from hil.execution.background import FORECAST_BYTES, output_of, start_process
 from hil.execution.data_folder import files_of
 from test_plans import Plan
 
@@ -76,12 +75,7 @@ class Forecasts:
             stderr=asyncio.subprocess.PIPE,
         )
         try:
-            out, complaint = await asyncio.wait_for(process.communicate(), _WITHIN_S)
-        except BaseException as error:
-            with contextlib.suppress(ProcessLookupError):
-                process.kill()
-            await process.wait()
-            if isinstance(error, TimeoutError):
-                raise BenchError(f"took more than {_WITHIN_S:g} s", where="forecast") from error
-            raise
+            out, complaint = await output_of(process, _WITHIN_S)
+        except TimeoutError as error:
+            raise BenchError(f"took more than {_WITHIN_S:g} s", where="forecast") from error
         return process.returncode or 0, out, complaint.decode("utf-8", "replace")

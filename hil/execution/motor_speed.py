@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import json
 from dataclasses import dataclass
 from pathlib import Path
 
 from hil.app.worker.motor_speed import MOTOR_SPEED
-from hil.execution.background import start_process
+from hil.execution.background import output_of, start_process
 
 _NICENESS = 5
 _WITHIN_S = 30.0
@@ -42,14 +41,9 @@ async def hear_motor_speed(bench: Path) -> Heard:
         stderr=asyncio.subprocess.DEVNULL,
     )
     try:
-        answer, _ = await asyncio.wait_for(process.communicate(), _WITHIN_S)
+        answer, _ = await output_of(process, _WITHIN_S)
         return Heard(**{"speed_rad_s": None, **json.loads(answer)})
     except TimeoutError:
         return Heard(None, f"took more than {_WITHIN_S:g} s")
     except ValueError:
         return Heard(None, f"its process ended with code {process.returncode}")
-    finally:
-        if process.returncode is None:
-            with contextlib.suppress(ProcessLookupError):
-                process.kill()
-            await process.wait()

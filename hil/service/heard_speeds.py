@@ -38,10 +38,12 @@ class HeardSpeeds:
         while not closing():
             for name in list(self._service.benches):
                 bench = self._service.own(name)
-                if bench is None or self._service.state(name)[0] != "emergency_stop":
+                # a state is read from the disk, so it comes last
+                measured = self._hub.has_measured(name)
+                if bench is None or measured or self._service.state(name)[0] != "emergency_stop":
                     self._next_s.pop(name, None)
                     self._hub.forget_heard(name)
-                elif not self._hub.has_measured(name) and self._next_s.get(name, 0.0) <= time.monotonic():
+                elif self._next_s.get(name, 0.0) <= time.monotonic():
                     self._next_s[name] = time.monotonic() + await self._listen(name, bench)
             await asyncio.sleep(_LOOK_S)
 

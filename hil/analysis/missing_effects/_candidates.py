@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
 from hil.analysis.missing_effects._fit import (
     ROUNDS,
     Point,
@@ -133,7 +131,7 @@ class Candidates:
         hypothesis = point.hypothesis
         known = sum(may_join(effect, Hypothesis(hypothesis.base, {})) for effect in EFFECTS.values())
         coordinates = self.problem.coordinates(hypothesis)
-        prior = -0.5 * float(np.sum(self.problem.prior(coordinates, np.zeros(len(coordinates))) ** 2))
+        prior = self.problem.log_prior(hypothesis)
         windows = point.powers(self.problem).log_likelihood(self.problem.noise)
         sides = [side for use in hypothesis.terms if (side := EFFECTS[use.id].law.follows)]
         places = sum(math.log(max(count_of_orders(self.problem, side), 1.0)) for side in sides)

@@ -99,9 +99,7 @@ class Responses:
 
     def posterior(self, hypothesis: Hypothesis) -> float:
         """Log likelihood of the responses and log density of the base's numbers."""
-        coordinates = self.problem.coordinates(hypothesis)
-        prior = self.problem.prior(coordinates, np.zeros(len(coordinates)))
-        return self.log_likelihood(hypothesis) - 0.5 * float(np.sum(prior**2))
+        return self.log_likelihood(hypothesis) + self.problem.log_prior(hypothesis)
 
     def _descended(self, hypothesis: Hypothesis, rounds: int, *, prior: bool = True) -> Hypothesis:
         best, reached = hypothesis, self.log_likelihood(hypothesis)

@@ -203,6 +203,11 @@ class Problem:
         away = self._away(coordinates, u)
         return np.asarray(np.sign(away) * np.sqrt(2.0 * np.log1p(away**2)))
 
+    def log_prior(self, hypothesis: Hypothesis) -> float:
+        """Log density of a hypothesis' numbers, of which the base says something."""
+        coordinates = self.coordinates(hypothesis)
+        return -0.5 * float(np.sum(self.prior(coordinates, np.zeros(len(coordinates))) ** 2))
+
     def prior_slopes(self, coordinates: Sequence[Coordinate], u: Array) -> Array:
         """Derivatives of `prior`, on the diagonal."""
         away = np.abs(self._away(coordinates, u)) + 1e-9

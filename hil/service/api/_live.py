@@ -130,15 +130,16 @@ class _Watching:
         buckets = shown.live.buckets
         names = [name for name in self._channels if name in buckets.names]
         if self._next_bucket - first <= MOST_BUCKETS:
-            first, width_s = max(first, buckets.oldest), BUCKET_S
+            first = max(first, buckets.oldest)
+            start_s, width_s = first * BUCKET_S, BUCKET_S
             texts = [shown.texts.of(name, first, self._next_bucket) for name in names]
         else:
             stretch = buckets.since(first)
             if stretch is None:
                 return ""
-            first, width_s = stretch.first, stretch.width_s
+            start_s, width_s = stretch.start_s, stretch.width_s
             texts = [_channel(stretch, name) for name in names]
-        begin = f'"run":{shown.run},"start_s":{first * BUCKET_S:.3f},"width_s":{width_s:.3f}'
+        begin = f'"run":{shown.run},"start_s":{start_s:.3f},"width_s":{width_s:.3f}'
         return f'event: samples\ndata: {{{begin},"channels":{{{",".join(texts)}}}}}\n\n'
 
     def _spectrum(self, shown: LiveView) -> str:

@@ -109,10 +109,8 @@ class LiveHub:
 
         None if neither is known.
         """
-        shown = self._runs.get(bench)
-        if shown is None or shown.live.last_speed is None:
-            return self._heard.get(bench)
-        return last_speed(*shown.live.last_speed)
+        measured = self._measured(bench)
+        return self._heard.get(bench) if measured is None else last_speed(*measured)
 
     def why_no_speed(self, bench: str) -> str:
         """Why the speed of a bench could not be heard; '' if it was, or if no one has listened."""
@@ -120,8 +118,7 @@ class LiveHub:
 
     def has_measured(self, bench: str) -> bool:
         """Whether a run of this service has measured the speed of a bench."""
-        shown = self._runs.get(bench)
-        return shown is not None and shown.live.last_speed is not None
+        return self._measured(bench) is not None
 
     def take_heard(self, bench: str, speed: LastSpeed) -> None:
         """Show a speed that was heard, while no run has measured one."""
@@ -212,6 +209,10 @@ class LiveHub:
         if overview is not None:
             with contextlib.suppress(OSError, HilError):
                 await asyncio.to_thread(write_overview, overview, self.overview_folder(shown.run))
+
+    def _measured(self, bench: str) -> tuple[float, datetime.datetime] | None:
+        shown = self._runs.get(bench)
+        return shown.live.last_speed if shown else None
 
     def _tell(self, bench: str) -> None:
         for event in self.viewers[bench]:

@@ -52,7 +52,7 @@ def chirp_problem(factor: float, *effects: EffectUse) -> Problem:
         name: value * (factor if name.endswith(("inertia", "stiffness")) else 1.0)
         for name, value in NUMBERS.items()
     }
-    return _problem(Model("two_inertia", far), chirp(0.005, *effects))
+    return problem_about(Model("two_inertia", far), chirp(0.005, *effects))
 
 
 def multisine(*effects: EffectUse) -> Recording:
@@ -75,10 +75,11 @@ def multisine(*effects: EffectUse) -> Recording:
 def multisine_problem(factor: float, *effects: EffectUse) -> Problem:
     """A multisine of two motors with effects; a base whose inertias are off by a factor."""
     far = {name: value * (factor if name.endswith("inertia") else 1.0) for name, value in MOTORS.items()}
-    return _problem(Model("two_inertia", far | {"shaft_stiffness": 500.0}), multisine(*effects))
+    return problem_about(Model("two_inertia", far | {"shaft_stiffness": 500.0}), multisine(*effects))
 
 
-def _problem(model: Model, recording: Recording) -> Problem:
+def problem_about(model: Model, recording: Recording) -> Problem:
+    """A base that is asked about a recording, whose noise is proven."""
     series = series_of(model, [recording])
     levels = proven_noise(series, {})
     return problem_of(model, series, levels, white(levels, series[0].rate_hz))

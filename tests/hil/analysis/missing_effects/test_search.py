@@ -6,12 +6,9 @@ import pytest
 
 from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._hypothesis import Hypothesis
-from hil.analysis.missing_effects._noise import proven_noise
-from hil.analysis.missing_effects._problem import problem_of
 from hil.analysis.missing_effects._search import _among_losses
-from hil.analysis.missing_effects._series import series_of
-from hil.analysis.missing_effects._spectrum import white
 from hil.core.model import EffectUse
+from tests.hil.analysis.missing_effects.chain import problem_about
 from tests.hil.analysis.missing_effects.two_masses import base, braked
 
 
@@ -21,9 +18,7 @@ def test_a_loss_that_bends_gives_way_to_a_dry_and_a_viscous_one() -> None:
     The mass rests below its dry friction, which neither law with a dry part does: either may be likelier.
     """
     model = base()
-    series = series_of(model, [braked(0.6, 0.7)])
-    levels = proven_noise(series, {})
-    done = Candidates(problem_of(model, series, levels, white(levels, series[0].rate_hz)))
+    done = Candidates(problem_about(model, braked(0.6, 0.7)))
     alone = done.fitted(Hypothesis(model, dict(model.parameters)), None)
     done.go_on_from(alone)
     rolling = EffectUse("running_resistance", {"rolling_nm": 0.6, "aero_nms2_rad2": 0.02})
