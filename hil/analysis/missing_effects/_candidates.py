@@ -16,7 +16,8 @@ from hil.analysis.missing_effects._fit import (
 )
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._odds import Candidate
-from hil.analysis.missing_effects._orders import count_of_orders, turned_with
+from hil.analysis.missing_effects._orders import count_of_orders
+from hil.analysis.missing_effects._phase import tracked
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import may_join
 from hil.analysis.missing_effects._spectrum import white
@@ -26,6 +27,7 @@ _SETTLED = 0.1  # growth of log likelihood between rounds that ends them
 GROWING = 1.0
 """Growth of log likelihood above which a fit goes on: what it lacks would look like another name."""
 MOST_ROUNDS = 4 * ROUNDS
+_OF_A_SAMPLE = (0.02, 0.25, 0.5, 0.75, 0.98)  # where a dead time may be within the sample that it ends in
 
 
 @dataclass
@@ -59,7 +61,7 @@ class Candidates:
         """Weigh errors by what the best hypothesis so far leaves."""
         powers = best.point.powers(self.problem)
         self.values = powers.values(self.problem.noise)
-        turned = turned_with(self.problem, best.point)
+        turned = tracked(self.problem, best.point)
         self.problem = turned.weighed_by(powers.spectrum(self.problem.noise))
 
     def weighed_as(self, candidate: Candidate, *, once: bool = False) -> Problem:
@@ -108,9 +110,35 @@ class Candidates:
                 break
             before = after
             problem = self.weighed_as(after)
+        if rounds >= ROUNDS and hypothesis.kind == "rigid" and "torque_delay" not in held:
+            best = self._within_a_sample(best)
         key = tuple(sorted(best.names))
         self.found[key] = max(self.found.get(key, best), best, key=self.score)
         return best
+
+    def _within_a_sample(self, best: Candidate) -> Candidate:
+        """With the likeliest dead time of those that delay a rigid axle by as many samples.
+
+        Its shaft torque steps with the sample that a request falls in. A slope over a whole one does not lead
+        through it.
+        """
+        hypothesis, starts = best.point.hypothesis, best.point.starts
+        if "torque_delay" not in hypothesis.numbers:
+            return best
+        sample_s = self.problem.series[0].dt
+        whole = math.floor(hypothesis.numbers["torque_delay"] / sample_s)
+        tried = [
+            self.judged(point_at(self.problem, hypothesis.with_number("torque_delay", delay_s), starts))
+            for delay_s in (
+                hypothesis.base.parameters["torque_delay"],
+                *((whole + share) * sample_s for share in _OF_A_SAMPLE),
+            )
+        ]
+        likeliest = max(tried, key=self.score)
+        if self.score(likeliest) < self.score(best) + _SETTLED:
+            return best
+        settled = fit(self.weighed_as(likeliest), likeliest.point, frozenset({"torque_delay"}))
+        return max(best, likeliest, self.judged(settled), key=self.score)
 
     def _begun(self, hypothesis: Hypothesis, near: Candidate | None) -> Point:
         """A hypothesis as it is, from starts of another; as measured where it sticks and these may be off."""

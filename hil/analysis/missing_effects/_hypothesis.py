@@ -89,6 +89,10 @@ class Hypothesis:
         """Names of the effects, each with the channel that it is about."""
         return tuple(label_of(use) for use in self.terms)
 
+    def with_number(self, name: str, value: float) -> Hypothesis:
+        """The same, one number of the base another one."""
+        return replace(self, numbers={**self.numbers, name: value})
+
     def with_term(self, use: EffectUse, opened: frozenset[str] = frozenset()) -> Hypothesis:
         """The same with one more effect."""
         complete = EffectUse(use.id, EFFECTS[use.id].completed(use.values))
