@@ -2,8 +2,8 @@
 
 A speed's white noise makes its integral a random walk of known size, which a high order turns into whole
 turns of phase. The walk joins the fit: its values at knots are linear to first order, with the walk's own
-density as their prior, so that a ripple that shows little moves no angle (in place of the tracking of H. Vold,
-J. Leuridan, SAE 931288 (1993), which follows an amplitude).
+density as their prior, so that a ripple that shows little moves no angle (it stands in place of the tracking
+of H. Vold, J. Leuridan, SAE 931288 (1993), which follows an amplitude).
 """
 
 from __future__ import annotations
