@@ -21,7 +21,13 @@ from hil.core.errors.wording import multiple, share
 from hil.core.model import parameter_unit
 from reports import labels
 from reports.diagnosis_figures import WINDOW_S, GapBars, GapRow, overlay_figures, shown_overlay
-from reports.diagnosis_names import alternatives_table, considered_table, effects_table, effects_text
+from reports.diagnosis_names import (
+    alternatives_table,
+    considered_table,
+    effects_table,
+    effects_text,
+    names_of,
+)
 from reports.labels import Label, channel_label, parameter_title
 from reports.parts import Cell, Map, Part, Table
 
@@ -48,7 +54,7 @@ def headline(found: Diagnosis) -> str:
         return f"Unfinished: {found.unfinished}"
     if found.verdict == "unknown" and found.held_out_open and not found.open_channels:
         return _HELD_OUT
-    names = ", ".join(EFFECTS[e.use.id].title.lower() for e in found.effects)
+    names = ", ".join(names_of(e) for e in found.effects)
     return _HEADLINES[found.verdict].format(names=names)
 
 

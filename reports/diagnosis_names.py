@@ -30,6 +30,19 @@ def effects_text(found: Diagnosis) -> str:
     )
 
 
+def names_of(effect: NamedEffect) -> str:
+    """An effect's title, and those of the names that the data cannot tell from it."""
+    others = (" and ".join(_titled(part) for part in name.split(" + ")) for name in effect.alike)
+    return " or ".join((EFFECTS[effect.use.id].title.lower(), *others))
+
+
+def _titled(label: str) -> str:
+    """`sensor_lag(motor_speed_rad_s)` in words."""
+    id_, _, channel = label.rstrip(")").partition("(")
+    title = EFFECTS[id_].title.lower()
+    return f"{title} of {with_titles(channel)}" if channel else title
+
+
 def _lowered(sentence: str) -> str:
     return f"{sentence[:1].lower()}{sentence[1:]}"
 
@@ -44,7 +57,7 @@ def effects_table(found: Diagnosis) -> Table:
             error = e.standard_error.get(name)
             rows.append(
                 (
-                    EFFECTS[e.use.id].title if index == 0 else "",
+                    _upper(names_of(e)) if index == 0 else "",
                     parameter_title(name),
                     shown,
                     labels.number(error, significant=2) if error is not None else "",
@@ -53,6 +66,10 @@ def effects_table(found: Diagnosis) -> Table:
                 )
             )
     return Table(("effect", "parameter", "value", "standard error", "confidence", "where"), tuple(rows), 2, 5)
+
+
+def _upper(sentence: str) -> str:
+    return f"{sentence[:1].upper()}{sentence[1:]}"
 
 
 def _place(effect: NamedEffect) -> str:

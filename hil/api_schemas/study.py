@@ -171,6 +171,7 @@ class FoundEffect(_Data):
     channels: list[str]
     band_hz: tuple[float, float]
     condition: str
+    one_of: str = Field("", description="names that the data cannot tell apart; they share the confidence")
 
 
 class FoundAlternative(_Data):
@@ -180,6 +181,7 @@ class FoundAlternative(_Data):
     confidence: float
     separating_test: str
     plan: str | None = None
+    one_of: str = Field("", description="names that the data cannot tell apart; they share the confidence")
 
 
 class FoundGap(_Data):

@@ -225,3 +225,26 @@ def test_the_first_screen_has_the_gaps_and_their_picture(found: Diagnosis) -> No
 def test_a_name_is_never_quite_certain(found: Diagnosis) -> None:
     sure = dataclasses.replace(found.effects[0], confidence=0.9999)
     assert "(>99%)" in effects_in_words(dataclasses.replace(found, effects=(sure,)))
+
+
+def test_names_that_the_data_cannot_tell_apart_stand_together_and_share_the_confidence(
+    found: Diagnosis,
+) -> None:
+    use = EffectUse("running_resistance", {"rolling_nm": 3.0, "aero_nms2_rad2": 0.01})
+    other = EffectUse("sensor_lag", {"channel": MOTOR, "time_constant_s": 0.01})
+    named = dataclasses.replace(
+        found.effects[0], use=use, confidence=0.9, alike=("sensor_lag(motor_speed_rad_s)",)
+    )
+    doubt = dataclasses.replace(
+        found,
+        effects=(named,),
+        alternatives=(Alternative(other, 0.9, "A coast-down."), Alternative(SKEW, 0.04, "A chirp.")),
+    )
+    content = doubt.as_json()
+    names = "running_resistance or sensor_lag(motor_speed_rad_s)"
+    assert content["effects"][0]["class"] == content["alternatives"][0]["class"] == names
+    assert "class" not in content["alternatives"][1]
+    assert content["something_else"] == pytest.approx(0.06)
+    assert found.as_json()["something_else"] == pytest.approx(0.0)
+    page: Any = html.fromstring(diagnosis_html(doubt, "axle.toml"))
+    assert "Named: running resistance or sensor lag of motor speed" in " ".join(page.text_content().split())

@@ -23,6 +23,7 @@ from hil.analysis.diagnosis.tell.result import (
     Overlay,
     Start,
     Verdict,
+    label_of,
 )
 from hil.analysis.diagnosis.tell.separating import plan_file, plan_within_recordings, worth_a_plan
 from hil.analysis.diagnosis.tell.thresholds import CHANNEL_NOISES
@@ -153,7 +154,7 @@ def _named(found: Outcome, one: Named, shown: _Shown) -> NamedEffect:
         place = where_changed(
             shown.traces, found.noise, samples, shown.after_samples, shown.map_before, shown.map_after
         )
-    return NamedEffect(clean(one.use), one.standard_error, one.confidence, place)
+    return NamedEffect(clean(one.use), one.standard_error, one.confidence, place, alike=one.alike)
 
 
 def _without(model: Model, use: EffectUse) -> Model | None:
@@ -219,18 +220,20 @@ def _numbers(found: Outcome, shown: _Shown) -> tuple[Start | None, dict[str, tup
 def _alternatives(found: Outcome, shown: _Shown) -> tuple[Alternative, ...]:
     """Other names, each with the test that separates it from what is given back."""
     first = found.effects[0].id if found.effects else "numbers"
+    shared = {name: one.confidence for one in found.effects for name in one.alike}
     ratio = gear_ratio_of(found.model) or 1.0
     others = []
     for one in found.alternatives:
-        if found.effects and not round(one.confidence, 2):
+        confidence = shared.get(label_of(one.use), one.confidence)
+        if found.effects and not round(confidence, 2):
             continue  # it would be shown as 0
         text, plan = one.separating_test or EFFECTS[one.id].shown_by, ""
-        if one.model is not None and worth_a_plan(one.confidence, shown.traces):
+        if one.model is not None and worth_a_plan(confidence, shown.traces):
             text, plan = plan_within_recordings(
                 found.model, one.model, found.noise, shown.traces, ratio, (first, one.id)
             )
         name = plan_file(one.use) if plan else None
-        others.append(Alternative(one.use, one.confidence, text, name, plan or None))
+        others.append(Alternative(one.use, confidence, text, name, plan or None))
     return tuple(others)
 
 

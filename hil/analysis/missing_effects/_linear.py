@@ -94,6 +94,8 @@ class Responses:
         without the prior as well (but for a gear ratio: teeth were counted), and from its end with it.
         """
         held = self._descended(hypothesis, rounds)
+        if self.problem.log_prior(held) > -ALIKE:  # calibrated: nothing holds them
+            return held
         freed = self._descended(self._descended(hypothesis, rounds, prior=False), rounds)
         return max((held, freed), key=self.posterior)
 

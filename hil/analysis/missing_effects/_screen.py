@@ -91,11 +91,27 @@ def promises(
     Args:
         asked: which effects are looked at; all of them when left out.
     """
-    hypothesis = at.point.hypothesis
     project = _Projection(problem, at)
-    found: list[Promise] = []
-    joining = _asked(Scene(problem, hypothesis, at.point))
-    for some in _together(one for one in joining if asked(one[0][0])):
+    joining = [one for one in _asked(Scene(problem, at.point.hypothesis, at.point)) if asked(one[0][0])]
+    found = _promised(project, [one for one in joining if one[1].first])
+    best: dict[str, tuple[float, int]] = {}
+    for promise, place in found:
+        best[promise.label] = max(best.get(promise.label, (0.0, place)), (promise.gain, place))
+    closer = [
+        (uses, probe)
+        for uses, probe in joining
+        if not probe.first and abs(probe.place - best.get(label_of(uses[0]), (0.0, -2))[1]) <= 1
+    ]
+    return [promise for promise, _ in (*found, *_promised(project, closer))]
+
+
+def _promised(
+    project: _Projection, joining: Sequence[tuple[list[EffectUse], Probe]]
+) -> list[tuple[Promise, int]]:
+    """What sizes of effects promise, each with the place of its probe."""
+    at, found = project.at, []
+    hypothesis = at.point.hypothesis
+    for some in _together(joining):
         alone = project.products([hypothesis.with_term(use) for uses, _ in some for use in uses])
         first = 0
         for uses, probe in some:
@@ -103,7 +119,7 @@ def promises(
             factors, drop, u = project.explained(alone, which, probe.directions)
             use = EffectUse(uses[0].id, dict(probe.start(factors)))
             gain = growth(drop, 0.5 * float(at.left @ at.left))
-            found.append(Promise(use, at.point, gain, hypothesis.moved(at.coordinates, u)))
+            found.append((Promise(use, at.point, gain, hypothesis.moved(at.coordinates, u)), probe.place))
     return found
 
 

@@ -70,7 +70,7 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     candidates = list(done.found.values())
     values = done.problem.powers(best.point.errors, once=True).values(done.problem.noise)
     weights = _weights(done.problem, candidates, values)
-    rivals = _alike(done, best, candidates, weights, values)
+    rivals = _alike(done, best, candidates, weights)
     effects: list[Named] = []
     doubtful: list[Named] = []
     for index, use in enumerate(best.point.hypothesis.terms):
@@ -262,25 +262,20 @@ def _roundings(done: Candidates, weight: float) -> list[Named]:
 
 
 def _alike(
-    done: Candidates, best: Candidate, candidates: Sequence[Candidate], weights: Array, values: float
+    done: Candidates, best: Candidate, candidates: Sequence[Candidate], weights: Array
 ) -> dict[str, tuple[str, ...]]:
     """Of each name of the best hypothesis: the names that could take its place without the data telling.
 
-    What they tell of predictions that differ may be just what a number more costs: then they tell nothing,
-    nor where no name in that place has the half of the odds.
+    They tell names apart at odds of 20 : 1.
     """
     problem = done.weighed_as(best, once=True)
     found: dict[str, tuple[str, ...]] = {}
     own = [weight for one, weight in zip(candidates, weights, strict=True) if one.names == best.names]
     least = max(own, default=0.0) * np.exp(-ALIKE)
-    held = {name: _held(name, candidates, weights) for name in best.names}
     for one, weight in zip(candidates, weights, strict=True):
         lost, new = {*best.names} - {*one.names}, {*one.names} - {*best.names}
-        if len(lost) != 1 or len(new) != 1 or weight < least:
-            continue
-        name = lost.pop()
-        more = abs(best.cost(values) - one.cost(values))
-        if held[name] < HALF or _apart(problem, best.point, one.point) - more < ALIKE:
+        if len(lost) == len(new) == 1 and weight >= least:
+            name = lost.pop()
             found[name] = (*found.get(name, ()), new.pop())
     for index, use in enumerate(best.point.hypothesis.terms):
         late = _late_outputs(done, best.point.hypothesis.without(index), use)

@@ -45,13 +45,13 @@ def text_of(found: Diagnosis, out: Path) -> str:
             + (f" ± {e.standard_error[name]:.2g}" if name in e.standard_error else "")
             for name, value in e.use.values.items()
         )
-        lines.append(f"  {e.use.id} ({chance(e.confidence)}): {values}")
+        lines.append(f"  {e.class_ or e.use.id} ({chance(e.confidence)}): {values}")
         low, high = e.where.band_hz
         lines.append(f"    seen in {', '.join(e.where.channels)}, {low:g}-{high:g} Hz, {e.where.condition}")
     if found.signature:
         lines.append(f"  {found.signature}")
     for a in found.alternatives:
-        if a.confidence >= _WORTH_A_LINE and found.verdict != "none":
+        if a.confidence >= _WORTH_A_LINE and found.verdict != "none" and not found.class_of(a):
             about = a.use.values.get("channel", a.use.values.get("parameter"))
             name = f"{a.use.id} of {about}" if about else a.use.id
             test = f"hil run {out / a.plan}" if a.plan else a.separating_test

@@ -143,11 +143,13 @@ def _findings(content: dict[str, Any]) -> dict[str, Any]:
         {
             **{name: one[name] for name in ("id", "parameters", "standard_error", "confidence")},
             **{name: one["where"][name] for name in ("channels", "band_hz", "condition")},
+            "one_of": one.get("class", ""),
         }
         for one in content["effects"]
     ]
     alternatives = [
         {name: one.get(name) for name in ("id", "confidence", "separating_test", "plan")}
+        | {"one_of": one.get("class", "")}
         for one in content["alternatives"]
     ]
     facts = {"effects": effects, "alternatives": alternatives, "unfinished": content.get("unfinished", "")}

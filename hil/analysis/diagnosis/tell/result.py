@@ -26,7 +26,8 @@ INTERRUPTED, OUT_OF_TIME = "interrupted", "out of time"
 class NamedEffect:
     """An effect that the data show; `confidence` is the chance that the name is right.
 
-    `drop` is what it takes off the squared error, in noise variances; None where that says nothing.
+    `drop` is what it takes off the squared error, in noise variances; None where that says nothing. `alike`
+    are names that the data cannot tell from it: they share the confidence.
     """
 
     use: EffectUse
@@ -34,6 +35,12 @@ class NamedEffect:
     confidence: float
     where: Where
     drop: float | None = None
+    alike: tuple[str, ...] = ()
+
+    @property
+    def class_(self) -> str:
+        """Its name and those that the data cannot tell from it; empty where it stands alone."""
+        return " or ".join((label_of(self.use), *self.alike)) if self.alike else ""
 
 
 @dataclass(frozen=True)
@@ -130,6 +137,20 @@ class Diagnosis:
     #: Where the model given back is further off than the one that came, in words.
     worse: tuple[str, ...] = ()
 
+    @property
+    def something_else(self) -> float:
+        """Probability that what is missing, or more that is, has no name here."""
+        if self.verdict == "none":
+            return 0.0
+        named = min((one.confidence for one in self.effects), default=0.0)
+        others = sum(one.confidence for one in self.alternatives if not self.class_of(one))
+        return max(0.0, 1.0 - named - others)
+
+    def class_of(self, other: Alternative) -> str:
+        """The class of names, which the data cannot tell apart, that an alternative is in; empty without."""
+        label = label_of(other.use)
+        return next((one.class_ for one in self.effects if label in one.alike), "")
+
     def as_json(self) -> dict[str, Any]:
         """The content of `diagnosis.json`."""
         return {
@@ -137,6 +158,7 @@ class Diagnosis:
             "verdict": self.verdict,
             **({"unfinished": self.unfinished} if self.unfinished else {}),
             "effects": [_effect(e) for e in self.effects],
+            "something_else": round(self.something_else, 3),
             **({"start": self.start.as_json()} if self.start is not None else {}),
             "parameter_updates": {
                 name: {"from": a, "to": b, "standard_error": s}
@@ -147,6 +169,7 @@ class Diagnosis:
                     "id": a.use.id,
                     "parameters": dict(a.use.values),
                     "confidence": round(a.confidence, 3),
+                    **({"class": of} if (of := self.class_of(a)) else {}),
                     "separating_test": a.separating_test,
                     **({"plan": a.plan} if a.plan else {}),
                 }
@@ -204,12 +227,19 @@ def _effect(effect: NamedEffect) -> dict[str, Any]:
         "standard_error": effect.standard_error,
         "derived": derived_of(effect.use),
         "confidence": round(effect.confidence, 3),
+        **({"class": effect.class_} if effect.alike else {}),
         "where": {
             "channels": list(effect.where.channels),
             "band_hz": list(effect.where.band_hz),
             "condition": effect.where.condition,
         },
     }
+
+
+def label_of(use: EffectUse) -> str:
+    """An effect's name, with the channel or parameter that it is about."""
+    about = [str(use.values[name]) for name in EFFECTS[use.id].text_parameters if name in use.values]
+    return f"{use.id}({', '.join(about)})" if about else use.id
 
 
 def derived_of(use: EffectUse) -> dict[str, float]:

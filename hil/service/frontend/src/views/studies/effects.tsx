@@ -29,10 +29,13 @@ export function Effects({ of }: { of: Diagnosis }): JSX.Element {
   );
 }
 
-function Named({ effect: { id, confidence, parameters, standard_error: errors, channels, band_hz: band, condition } }: { effect: Effect }): JSX.Element {
+function Named({ effect: { id, one_of: alike, confidence, parameters, standard_error: errors, channels, band_hz: band, condition } }: { effect: Effect }): JSX.Element {
   const values = Object.entries(parameters).map(([name, value]) => `${name} = ${typeof value === "number" ? significant(value, 4) : value}${errors[name] ? ` ± ${significant(errors[name], 2)}` : ""}`);
-  return <><b>{inWords(id)}</b>{` (${percentOf(confidence)})${values.length ? `: ${values.join(", ")}` : ""}; `}{tx("seen in {channels}, {lower} to {upper} Hz, {condition}", { channels: channels.join(", "), lower: band[0], upper: band[1], condition: <English>{condition}</English> })}</>;
+  return <><b>{alike ? namesIn(alike) : inWords(id)}</b>{` (${percentOf(confidence)})${values.length ? `: ${values.join(", ")}` : ""}; `}{tx("seen in {channels}, {lower} to {upper} Hz, {condition}", { channels: channels.join(", "), lower: band[0], upper: band[1], condition: <English>{condition}</English> })}</>;
 }
+
+/** Names that the data cannot tell apart, in words. */
+const namesIn = (alike: string): string => alike.split(" or ").map(inWords).join(` ${t("or")} `);
 
 export function Alternatives({ of }: { of: Diagnosis }): JSX.Element {
   const may = useMay(), files = of.study.files ?? [];
