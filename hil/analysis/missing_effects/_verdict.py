@@ -211,7 +211,7 @@ def _named(
         if np.isfinite(error := at.standard_error(index, name))
     }
     names = [part for name in (label, *alike) for part in name.split(" + ")]
-    test = "; or ".join(dict.fromkeys(EFFECTS[name.split("(")[0]].shown_by for name in names))
+    test = " Or: ".join(dict.fromkeys(EFFECTS[name.split("(")[0]].shown_by for name in names))
     return Named(use, held * share, errors, alike, test if alike else "")
 
 
@@ -266,17 +266,16 @@ def _alike(
 ) -> dict[str, tuple[str, ...]]:
     """Of each name of the best hypothesis: the names that could take its place without the data telling.
 
-    They tell names apart at odds of 20 : 1.
+    They tell two names apart where one is in the place of the other at odds of 20 : 1.
     """
     problem = done.weighed_as(best, once=True)
+    others = sorted({name for one in candidates for name in one.names} - {*best.names})
     found: dict[str, tuple[str, ...]] = {}
-    own = [weight for one, weight in zip(candidates, weights, strict=True) if one.names == best.names]
-    least = max(own, default=0.0) * np.exp(-ALIKE)
-    for one, weight in zip(candidates, weights, strict=True):
-        lost, new = {*best.names} - {*one.names}, {*one.names} - {*best.names}
-        if len(lost) == len(new) == 1 and weight >= least:
-            name = lost.pop()
-            found[name] = (*found.get(name, ()), new.pop())
+    for name in best.names:
+        least = np.exp(-ALIKE) * _held(name, candidates, weights)
+        alike = tuple(one for one in others if _held(one, candidates, weights, but=name) > least)
+        if alike:
+            found[name] = alike
     for index, use in enumerate(best.point.hypothesis.terms):
         late = _late_outputs(done, best.point.hypothesis.without(index), use)
         if late is None:
@@ -290,9 +289,9 @@ def _alike(
     return found
 
 
-def _held(name: str, candidates: Sequence[Candidate], weights: Array, *others: str) -> float:
-    """Weight of all candidates that have a name, or one of others."""
-    has = [not {name, *others}.isdisjoint(one.names) for one in candidates]
+def _held(name: str, candidates: Sequence[Candidate], weights: Array, *others: str, but: str = "") -> float:
+    """Weight of all candidates that have a name, or one of others, `but` those that have that one."""
+    has = [not {name, *others}.isdisjoint(one.names) and but not in one.names for one in candidates]
     return float(np.sum(weights[np.array(has)]))
 
 

@@ -1,0 +1,38 @@
+"""Names that the data cannot tell apart, whatever stands beside them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hil.analysis.missing_effects._candidates import Candidates
+from hil.analysis.missing_effects._fit import point_at
+from hil.analysis.missing_effects._hypothesis import Hypothesis
+from hil.analysis.missing_effects._verdict import _alike
+from hil.core.model import EffectUse
+from tests.hil.analysis.missing_effects.chain import problem_about
+from tests.hil.analysis.missing_effects.two_masses import base, braked
+
+_ROLLING = EffectUse("running_resistance", {"rolling_nm": 0.4, "aero_nms2_rad2": 0.007})
+_VISCOUS = EffectUse("load_viscous_drag", {"coefficient_nms_rad": 0.1})
+_DRY = EffectUse("coulomb_friction", {"torque_nm": 0.4})
+
+
+def test_names_are_alike_where_one_is_in_the_place_of_the_other_at_odds_below_twenty() -> None:
+    """The likeliest set has two names; what stands for one of them stands alone elsewhere."""
+    model = base()
+    done = Candidates(problem_about(model, braked(0.6, 0.7)))
+    sets = ((_ROLLING, _DRY), (_ROLLING,), (_VISCOUS,), (_DRY,))
+    numbers = Hypothesis(model, dict(model.parameters))
+    found = []
+    for uses in sets:
+        hypothesis = numbers
+        for use in uses:
+            hypothesis = hypothesis.with_term(use)
+        found.append(done.judged(point_at(done.problem, hypothesis)))
+    weights = np.array([0.1, 0.72, 0.15, 0.03])
+    assert _alike(done, found[0], found, weights) == {
+        "running_resistance": ("load_viscous_drag",),
+        "coulomb_friction": ("load_viscous_drag",),
+    }
+    certain = np.array([0.96, 0.0, 0.004, 0.036])
+    assert _alike(done, found[0], found, certain) == {}
