@@ -51,10 +51,21 @@ class Candidates:
         """What one more free number must let log L grow by."""
         return self.score(candidate) - self.score(replace(candidate, free=candidate.free + 1))
 
+    def least(self, best: Candidate) -> float:
+        """What a name more must promise: where noise is all that is left, more than slow noise would give."""
+        noise = self.problem.is_noise(best.point.errors)
+        return self.cost_of_a_number(best) * (self.problem.slow_noise if noise else 1.0)
+
+    def gains(self, best: Candidate, grown: Candidate) -> bool:
+        """Whether a name more pays, where noise is all that is left by more than slow noise would give."""
+        grew = grown.log_likelihood - best.log_likelihood
+        costs = grew - (self.score(grown) - self.score(best))
+        return grew > costs * (self.problem.slow_noise if self.problem.is_noise(best.point.errors) else 1.0)
+
     def may_gain(self, candidate: Candidate) -> bool:
         """Whether one more name could pay, if it left nothing but noise."""
         powers = candidate.point.powers(self.problem)
-        least = math.log(candidate.known) + self.cost_of_a_number(candidate)
+        least = math.log(candidate.known) + self.least(candidate)
         return powers.most_to_gain(self.problem.noise) > least
 
     def go_on_from(self, best: Candidate) -> None:

@@ -51,7 +51,7 @@ def search(problem: Problem, show: Callable[[str], None]) -> Candidates:
     weak = False
     while len(best.names) < _MOST_NAMES and done.may_gain(best):
         grown = _grown(done, best, linear if not best.names else (), show)
-        if grown is None or done.score(grown) <= done.score(best):
+        if grown is None or not done.gains(best, grown):
             break
         had, has = (problem.mean_square(one.point.errors) for one in (best, grown))
         was_weak, weak = weak, remains(had, has, problem.noise**2, problem.slow_noise) > HALF
@@ -248,7 +248,7 @@ def _suggested(done: Candidates, best: Candidate) -> list[tuple[Hypothesis, floa
         for one in (by_name[names] for names in order)
     ]
     promised = promises(done.problem, linearised(done.problem, best.point))
-    least = done.cost_of_a_number(best)
+    least = done.least(best)
     for sizes in best_by_name([one for one in promised if one.gain > least], _RIVALS):
         abrupt = EFFECTS[sizes[0].use.id].abrupt
         for one in sizes if abrupt else sizes[:1]:
