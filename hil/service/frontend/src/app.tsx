@@ -7,10 +7,12 @@ import { titleOf, to } from "./addresses.ts";
 import { refusal } from "./data.ts";
 import { English } from "./i18n/english.tsx";
 import { t } from "./i18n/text.ts";
+import { dismiss } from "./question.ts";
 import { usePlace, useTitle } from "./router.ts";
 import { session } from "./session.ts";
 import { Aside, Menu } from "./shell/menu.tsx";
 import { Palette, paletteOpen } from "./shell/palette.tsx";
+import { QuestionWindow } from "./shell/question.tsx";
 import { SignIn, signOut } from "./shell/sign-in.tsx";
 import { benchInSight, StopButton, UntakenStop } from "./shell/stop.tsx";
 import { useStore } from "./store.ts";
@@ -33,6 +35,7 @@ export function App(): JSX.Element {
   useEffect(() => {
     if ((!("bench" in place) || place.view === "wall") && place.view !== "run") benchInSight.value = "";
     refusal.value = null;
+    dismiss(); // it was of the view before
   }, [place]);
   if (place.view === "wall" && who.state === "in") return <main id="main"><View place={place} /></main>;
   return (
@@ -55,6 +58,7 @@ export function App(): JSX.Element {
         {who.state === "in" ? <View place={place} /> : who.state === "out" ? <SignIn /> : <p class="quiet">{t("Asking the service …")}</p>}
       </main>
       {who.state === "in" ? <footer class="foot"><a href={to.list("glossary")}>{t("Words of this page")}</a></footer> : null}
+      <QuestionWindow />
       <Palette />
     </>
   );

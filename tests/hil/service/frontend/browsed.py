@@ -40,6 +40,13 @@ def region(page: playwright.Page, name: str) -> playwright.Locator:
     return page.get_by_role("region", name=name, exact=True)
 
 
+def answer(page: playwright.Page, button: str) -> None:
+    """Press a button of the question that the page asks."""
+    asked = page.get_by_role("alertdialog")
+    asked.get_by_role("button", name=button, exact=True).click()
+    expect(asked).to_have_count(0)
+
+
 def choice(page: playwright.Page, name: str) -> playwright.Locator:
     """A list to choose from, by what stands before it."""
     return page.get_by_role("combobox", name=name, exact=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright import sync_api as playwright
 
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, heading, region, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, answer, expect, heading, region, to
 from tests.hil.service.looks import refuse_hard_to_use
 from tests.hil.service.served import SHORT, Served, served
 
@@ -40,19 +40,15 @@ def test_where_no_speed_is_known_a_reset_asks_whether_the_axle_stands(
 ) -> None:
     there.post("/benches/sim/emergency-stop")  # nothing was measured since the service was started
     to(page, there, "benches/sim")
-    state, asked = region(page, "State of sim"), list[str]()
+    state = region(page, "State of sim")
     expect(state).to_contain_text("The speed of the motor is not known: the bench is simulated, and exists")
-
-    def dismiss(dialog: playwright.Dialog) -> None:
-        asked.append(dialog.message)
-        dialog.dismiss()
-
-    page.once("dialog", dismiss)
     state.get_by_role("button", name=_RESET).click()
-    assert "Does the axle of sim stand still now?" in asked[0]
+    expect(page.get_by_role("alertdialog")).to_contain_text("Does the axle of sim stand still now?")
+    refuse_hard_to_use(page)
+    answer(page, "Cancel")
     assert there.get("/benches/sim")["state"] == "emergency_stop"
-    page.once("dialog", lambda dialog: dialog.accept())
     state.get_by_role("button", name=_RESET).click()
+    answer(page, "It stands still: reset")
     expect(heading(page, "Bench sim Free")).to_be_visible()
 
 

@@ -13,7 +13,7 @@ from playwright import sync_api as playwright
 from hil.api_schemas.api import Role
 from hil.client import Client, RunWanted
 from hil.service.serving import make_token
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, answer, choice, expect, heading, region, to
 from tests.hil.service.looks import refuse_hard_to_use
 from tests.hil.service.served import SHORT, Served, environment_of, served
 
@@ -91,8 +91,8 @@ def test_whoever_has_the_bench_lets_a_run_start(page: playwright.Page, there: Se
     page.get_by_role("button", name=f"Let it start: run {run.id}").click()
     *_, last = bert.progress(run.id)
     assert last.verdict == "pass"
-    page.on("dialog", lambda dialog: dialog.accept())
     page.get_by_role("button", name=re.compile("Remove the reservation of anna")).click()
+    answer(page, "Remove")
     expect(region(page, "Reservations")).to_contain_text("Nobody has reserved the bench.")
 
 

@@ -9,6 +9,7 @@ import { attempt, useData } from "../data.ts";
 import { English } from "../i18n/english.tsx";
 import { t, tx } from "../i18n/text.ts";
 import { useLost, type BenchState } from "../live.ts";
+import { agreed } from "../question.ts";
 import { useMay, useMe } from "../session.ts";
 import { linkTo } from "../ui/parts.tsx";
 import { LimitedField } from "../ui/too-long.tsx";
@@ -46,8 +47,9 @@ export function Actions({ state, answers = true }: { state: BenchState; answers?
     void attempt(() => post(`/runs/${run}/abort`).then(() => true)).then((taken) => { if (!taken) setEnded(null); });
   };
   const order = (what: string) => () => void attempt(() => post(`/runs/${running?.id}/${what}`));
-  const release = () => {
-    if (confirm(t("Is {bench} no longer driven by its agent? It can then be driven by another agent. A run of this agent is marked as interrupted.", { bench: bench.name }))) void attempt(() => ask("DELETE", `/benches/${name}/agent`));
+  const release = async () => {
+    const words = t("Is {bench} no longer driven by its agent? It can then be driven by another agent. A run of this agent is marked as interrupted.", { bench: bench.name });
+    if (await agreed(words, t("Release from its agent"), t("Cancel"))) void attempt(() => ask("DELETE", `/benches/${name}/agent`));
   };
   const mayReset = bench.state === "emergency_stop" && !running && may("engineer");
   const mayRelease = bench.lease === me.name || may("engineer");
@@ -59,7 +61,7 @@ export function Actions({ state, answers = true }: { state: BenchState; answers?
         {running && may("operator") && reached && held && !stopped ? <button type="button" class="main" disabled={ending} onClick={order("resume")}>{t("Resume")}</button> : null}
         {running && may("operator") && !stopped ? <button type="button" disabled={ending} onClick={() => end(running.id)}>{ending ? t("Being ended") : t("End the run")}</button> : null}
         {mayReset ? <Reset bench={bench} next={nextIn(queue)} /> : null}
-        {bench.away_since && may("engineer") ? <button type="button" onClick={release}>{t("Release from its agent")}</button> : null}
+        {bench.away_since && may("engineer") ? <button type="button" onClick={() => void release()}>{t("Release from its agent")}</button> : null}
         {!bench.lease && may("operator") && (!bench.reserved_by || bench.reserved_by === me.name) ? <button type="button" onClick={() => void attempt(() => ask("PUT", `/benches/${name}/lease`, { for_s: 3600 }))}>{t("Reserve for an hour")}</button> : null}
         {bench.lease && may("operator") && mayRelease ? <button type="button" onClick={() => void attempt(() => ask("DELETE", `/benches/${name}/lease`))}>{t("End the reservation")}</button> : null}
       </div>

@@ -5,6 +5,7 @@ import { post } from "../api/client.ts";
 import type { Bench, Run } from "../api/types.ts";
 import { attempt } from "../data.ts";
 import { t } from "../i18n/text.ts";
+import { agreed } from "../question.ts";
 import { lastSpeedText, resetText } from "./bench-words.ts";
 import { useNow } from "./panel-prompt.tsx";
 
@@ -12,13 +13,14 @@ import { useNow } from "./panel-prompt.tsx";
 // must not be enough.
 export function Reset({ bench, next }: { bench: Bench; next: Run | null | undefined }): JSX.Element {
   const said = lastSpeedText(bench, useNow()), unsure = bench.last_speed?.turns ?? true;
-  const reset = () => {
-    if (unsure && !confirm(`${said}\n${t("Does the axle of {bench} stand still now? Reset the emergency stop only if you have seen it.", { bench: bench.name })}`)) return;
+  const reset = async () => {
+    const words = <><p>{said}</p><p>{t("Does the axle of {bench} stand still now? Reset the emergency stop only if you have seen it.", { bench: bench.name })}</p></>;
+    if (unsure && !(await agreed(words, t("It stands still: reset"), t("Cancel")))) return;
     void attempt(() => post(`/benches/${encodeURIComponent(bench.name)}/reset`));
   };
   return (
     <>
-      <button type="button" class={unsure ? "" : "main"} onClick={reset}>{resetText(next)}</button>
+      <button type="button" class={unsure ? "" : "main"} onClick={() => void reset()}>{resetText(next)}</button>
       <span class={unsure ? "bad" : "quiet"}>{said}</span>
     </>
   );

@@ -9,6 +9,7 @@ import { itemOf } from "../../editor/drafts.ts";
 import { Versions, versionPath } from "../../editor/versions.tsx";
 import { English } from "../../i18n/english.tsx";
 import { t } from "../../i18n/text.ts";
+import { agreed } from "../../question.ts";
 import { go } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { kindInWords } from "../../ui/kinds.ts";
@@ -126,7 +127,7 @@ function Given({ name, kind }: { name: string; kind: GivenKind }): JSX.Element {
   const found = useData<{ name: string; built_in: boolean }[]>(of.path).data?.find((one) => one.name === name);
   const textPath = `${of.path}/${encodeURIComponent(name)}/text`, editPath = `${of.address(name)}?write=on`;
   const remove = async () => {
-    if (!confirm(t("Remove {name}? Its versions stay.", { name }))) return;
+    if (!(await agreed(t("Remove {name}? Its versions stay.", { name }), t("Remove"), t("Cancel")))) return;
     if (await attempt(async () => { await ask("DELETE", `${of.path}/${encodeURIComponent(name)}`); return true; })) go(to.list(of.list));
   };
   if (isOn && may("engineer")) return <><Heading kind={<a href={of.address(name)}>{name}</a>}>{of.edit}</Heading><EditFile key={itemOf(kind, name, version)} kind={kind} name={name} path={version === null ? textPath : versionPath(kind, name, version)} item={itemOf(kind, name, version)} /></>;

@@ -10,6 +10,7 @@ import { itemOf } from "../../editor/drafts.ts";
 import { Versions, versionPath } from "../../editor/versions.tsx";
 import { limitText } from "../../format.ts";
 import { t } from "../../i18n/text.ts";
+import { agreed } from "../../question.ts";
 import { go, useQuery } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { Heading, Loaded, Scroll, Section } from "../../ui/parts.tsx";
@@ -60,7 +61,7 @@ export function PlanView({ name }: { name: string }): JSX.Element {
 function Found({ plan, onSaved }: { plan: Plan; onSaved: () => void }): JSX.Element {
   const may = useMay(), [query] = useQuery(), textPath = `/plans/${encodeURIComponent(plan.name)}/text`, version = Number(query.get("version")) || null;
   const remove = async () => {
-    if (!confirm(t("Remove the plan {name}? Its runs stay.", { name: plan.name }))) return;
+    if (!(await agreed(t("Remove the plan {name}? Its runs stay.", { name: plan.name }), t("Remove"), t("Cancel")))) return;
     if (await attempt(async () => { await ask("DELETE", `/plans/${encodeURIComponent(plan.name)}`); return true; })) go(to.list("plans"));
   };
   const variables = Object.entries(plan.variables);

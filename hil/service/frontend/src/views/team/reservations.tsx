@@ -7,6 +7,7 @@ import type { Reservation } from "../../api/types.ts";
 import { attempt, useData } from "../../data.ts";
 import { moment } from "../../format.ts";
 import { t, tx } from "../../i18n/text.ts";
+import { agreed } from "../../question.ts";
 import { useMay, useMe } from "../../session.ts";
 import { Moment, Section } from "../../ui/parts.tsx";
 import { isTooLong, LimitedField } from "../../ui/too-long.tsx";
@@ -20,11 +21,11 @@ export function Reservations({ bench }: { bench: string }): JSX.Element {
   const path = `/benches/${encodeURIComponent(bench)}/reservations`;
   const found = useData<Reservation[]>(path, AGAIN_MS), may = useMay();
   const all = found.data ?? [];
-  const remove = (one: Reservation) => { if (confirm(t("Remove the reservation of {who}?", { who: one.who }))) void attempt(() => ask("DELETE", `${path}/${one.id}`)).then(found.again); };
+  const remove = async (one: Reservation) => { if (await agreed(t("Remove the reservation of {who}?", { who: one.who }), t("Remove"), t("Cancel"))) void attempt(() => ask("DELETE", `${path}/${one.id}`)).then(found.again); };
   return (
     <Section title={t("Reservations")} label="reservations">
       {all.length
-        ? <ul class="queue">{all.map((one) => <Row key={one.id} one={one} onRemove={() => remove(one)} />)}</ul>
+        ? <ul class="queue">{all.map((one) => <Row key={one.id} one={one} onRemove={() => void remove(one)} />)}</ul>
         : <p class="quiet">{t("Nobody has reserved the bench.")}</p>}
       {may("operator") ? <details><summary>{t("Reserve the bench")}</summary><Form path={path} onDone={found.again} /></details> : null}
     </Section>
