@@ -1,4 +1,4 @@
-"""What the page asks before it does something: in a window of its own, above which the emergency stop goes on."""
+"""What the page asks before it does something: in a window of its own, above which the stop works."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from playwright import sync_api as playwright
 
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, heading, region, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, heading, region, reset_stop, to
 from tests.hil.service.looks import refuse_hard_to_use
 from tests.hil.service.served import ASKING, SHORT, Served, served
 
@@ -190,7 +190,7 @@ def test_a_run_that_was_stopped_has_the_button_that_resets_the_stop(
     state = region(page, "State of sim")
     expect(state).to_contain_text("emergency stop since")
     refuse_hard_to_use(page)
-    state.get_by_role("button", name="It is safe: reset the emergency stop").click()
+    reset_stop(page, there, state)
     expect(state).to_have_count(0)
     assert there.get("/benches/sim")["state"] == "free"
 

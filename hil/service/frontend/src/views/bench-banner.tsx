@@ -14,7 +14,7 @@ import { useMay, useMe } from "../session.ts";
 import { linkTo } from "../ui/parts.tsx";
 import { LimitedField } from "../ui/too-long.tsx";
 import { LONGEST_ANSWER, PromptCard } from "./panel-prompt.tsx";
-import { aboutBench, headlineOf, isCause, isEnding, isHeld, isReserved, messageOf, nextIn, nextOf, titleOf } from "./bench-words.ts";
+import { aboutBench, headlineOf, isCause, isEnding, isHeld, isReserved, messageOf, nextIn, nextOf, stoppingText, titleOf } from "./bench-words.ts";
 import { Reset } from "./reset.tsx";
 
 export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 }): JSX.Element {
@@ -25,7 +25,7 @@ export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 
       <p class="kind">{aboutBench(bench, bench.title || bench.name)}</p>
       <Title class="headline" aria-live="polite">{level === 1 ? <><small>{t("Bench {bench}", { bench: bench.name })}</small>{" "}</> : null}{headlineOf(bench, running ? titleOf(running) : null, isEnding(running), held)}</Title>
       {running ? <p>{tx("<a>Run {run}</a>, by {person}: {doing}", { a: linkTo(to.run(running.id)), run: running.id, person: running.requested_by, doing: <English>{running.doing}</English> })}</p> : null}
-      {held && !running?.prompt ? <p>{nextOf(state)}</p> : null}
+      {(held && !running?.prompt) || bench.state === "emergency_stop" ? <p>{nextOf(state)}</p> : null}
       {bench.why && !(running && bench.state === "running") ? <p><English>{bench.why}</English></p> : null}
       {running ? <progress max={1} value={running.share ?? 0} aria-label={t("Progress of the run")} /> : null}
       {running?.prompt ? <PromptCard prompt={running.prompt} run={running.id} reached={!bench.away_since} /> : message && !isCause(message, running) ? <p class="message" role="status"><English>{message}</English></p> : null}
@@ -83,7 +83,7 @@ export function ResetOf({ bench }: { bench: Bench }): JSX.Element | null {
 // What there is to do about a stop: whoever may resets it once its run has ended.
 export function AfterStop({ bench }: { bench: Bench }): JSX.Element {
   const may = useMay(), queue = useData<Run[]>(`/benches/${encodeURIComponent(bench.name)}/queue`).data ?? [];
-  if (bench.running) return <p>{t("The run is being ended.")}</p>;
+  if (bench.running) return <p>{stoppingText()}</p>;
   return may("engineer") ? <div class="row"><Reset bench={bench} next={nextIn(queue)} /></div> : <p>{t("When it is safe, an engineer resets the emergency stop.")}</p>;
 }
 
