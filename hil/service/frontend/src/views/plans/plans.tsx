@@ -38,7 +38,7 @@ export function Plans(): JSX.Element {
               <tbody>
                 {all.map((plan) => (
                   <tr key={plan.name}><th scope="row"><a href={to.plan(plan.name)}>{plan.name}</a></th>
-                    <td>{plan.title}{plan.hazard ? <span class="bad"> {t("hazardous: {hazard}", { hazard: plan.hazard })}</span> : null}</td><td>{plan.built_in ? t("built in") : t("given")}</td><td class="number">{durationOf(plan)}</td><td>{torquesOf(plan)}</td><td class="number">{Object.keys(plan.variables).length}</td>
+                    <td>{plan.title}{plan.hazard ? <span class="bad"> {t("hazardous: {hazard}", { hazard: plan.hazard })}</span> : null}</td><td>{plan.built_in ? t("built in") : t("given")}</td><td class="number">{durationOf(plan)}</td><td>{torquesOf(plan) || "–"}</td><td class="number">{Object.keys(plan.variables).length}</td>
                   </tr>
                 ))}
               </tbody>
