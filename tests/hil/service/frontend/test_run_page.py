@@ -10,7 +10,7 @@ import pytest
 from playwright import sync_api as playwright
 
 from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, heading, region, reset_stop, to
-from tests.hil.service.looks import refuse_hard_to_use
+from tests.hil.service.looks import expect_drawn, refuse_hard_to_use
 from tests.hil.service.served import ASKING, SHORT, Served, served
 
 pytestmark = IN_A_BROWSER
@@ -106,6 +106,18 @@ def test_a_failed_run_begins_with_the_criterion_that_failed_and_leads_to_its_pla
     criteria.get_by_text("What is measured").click()
     expect(criteria).to_contain_text("the value farthest in the step's direction")
     refuse_hard_to_use(page)
+
+
+def test_the_limit_that_a_run_failed_is_drawn_with_its_name_in_its_own_plots(
+    page: playwright.Page, there: Served
+) -> None:
+    failed = there.queue("failing")
+    there.over(failed)
+    to(page, there, f"runs/{failed}")
+    plot = page.get_by_role(
+        "img", name=re.compile("^Plot 2: shaft torque; Peak of the shaft torque: limit 90")
+    )
+    expect_drawn(plot, "gain", "fail")
 
 
 def test_a_passed_run_says_beside_its_verdict_that_a_quantity_did_not_settle(
