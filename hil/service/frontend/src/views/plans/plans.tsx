@@ -5,7 +5,7 @@ import { useEffect, useState } from "preact/hooks";
 import { ask, getText } from "../../api/client.ts";
 import type { Plan } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
-import { attempt, useData } from "../../data.ts";
+import { attempt, isMissing, useData } from "../../data.ts";
 import { itemOf } from "../../editor/drafts.ts";
 import { Versions, versionPath } from "../../editor/versions.tsx";
 import { limitText } from "../../format.ts";
@@ -21,6 +21,7 @@ import { renamed, START } from "./plan-text.ts";
 import { valuesFrom } from "./start-values.ts";
 import { StartPlan } from "./start-plan.tsx";
 import { GiveFile } from "../given/give-file.tsx";
+import { NoneThere } from "../none-there.tsx";
 import { Pictures } from "./pictures.tsx";
 
 export function Plans(): JSX.Element {
@@ -54,7 +55,8 @@ export function Plans(): JSX.Element {
 }
 
 export function PlanView({ name }: { name: string }): JSX.Element {
-  const plan = useData<Plan>(`/plans/${encodeURIComponent(name)}`);
+  const path = `/plans/${encodeURIComponent(name)}`, plan = useData<Plan>(path);
+  if (isMissing(plan)) return <NoneThere kind="plan" name={name} />;
   return <Loaded whole of={plan} what={t("plan {name}", { name })}>{(found) => <Found plan={found} onSaved={plan.again} />}</Loaded>;
 }
 
