@@ -120,6 +120,20 @@ def test_the_limit_that_a_run_failed_is_drawn_with_its_name_in_its_own_plots(
     expect_drawn(plot, "gain", "fail")
 
 
+def test_a_run_that_failed_stands_in_the_list_of_benches(page: playwright.Page, there: Served) -> None:
+    to(page, there, "benches")
+    expect(page.get_by_text("No run has failed since")).to_be_visible()
+    failed, passed = there.queue("failing"), there.queue("short")
+    there.over(failed)
+    there.over(passed)
+    failures = page.get_by_role("region", name=re.compile("^Runs that failed since "))
+    expect(failures.get_by_role("listitem")).to_have_count(1)
+    expect(failures).to_contain_text(f"fail Run {failed}: failing, by local")
+    refuse_hard_to_use(page)
+    failures.get_by_role("link", name=f"Run {failed}").click()
+    expect(region(page, "Why it did not pass")).to_be_visible()
+
+
 def test_a_passed_run_says_beside_its_verdict_that_a_quantity_did_not_settle(
     page: playwright.Page, there: Served
 ) -> None:
