@@ -120,6 +120,24 @@ def test_the_limit_that_a_run_failed_is_drawn_with_its_name_in_its_own_plots(
     expect_drawn(plot, "gain", "fail")
 
 
+def test_moments_of_a_run_are_to_the_second_and_its_duration_stands_beside_them(
+    page: playwright.Page, there: Served
+) -> None:
+    there.over(there.queue())
+    to(page, there, "runs/1")
+    facts = page.locator(".facts")
+    for name in ("queued at", "began", "ended"):
+        expect(facts).to_contain_text(re.compile(rf"{name}\w+ \d+, \d+, \d+:\d\d:\d\d"))
+    expect(facts).to_contain_text(re.compile(r"duration\d[\d.]*\ss|duration\d+ min"))
+    to(page, there, "runs")
+    table = region(page, "Runs, table")
+    expect(table.get_by_role("columnheader", name="duration")).to_be_visible()
+    expect(table.locator("tbody")).to_contain_text(re.compile(r"\d\ss"))
+    refuse_hard_to_use(page)
+    to(page, there, "audit")
+    expect(page.locator("tbody time").first).to_have_text(re.compile(r":\d\d:\d\d"))
+
+
 def test_a_run_that_failed_stands_in_the_list_of_benches(page: playwright.Page, there: Served) -> None:
     to(page, there, "benches")
     expect(page.get_by_text("No run has failed since")).to_be_visible()

@@ -22,7 +22,7 @@ import { limitsOf } from "./failed-limits.ts";
 import { Notes } from "./notes.tsx";
 import { isPassed, Outcome } from "./outcome.tsx";
 import { look, rangeOfSegment } from "./places.ts";
-import { valuesOf } from "./run-values.ts";
+import { tookOf, valuesOf } from "./run-values.ts";
 import { Unsettled } from "./unsettled.tsx";
 import { WhyItWaits } from "./waiting.tsx";
 import { BestRun } from "./best-run.tsx";
@@ -81,9 +81,10 @@ function RunFacts({ run }: { run: Run }): JSX.Element {
         run.dut ? [t("device under test"), run.dut] : null,
         [t("asked for by"), run.requested_by],
         run.approved_by ? [t("approved by"), run.approved_by] : null,
-        [t("queued at"), <Moment at={run.queued_at} />],
-        run.started_at ? [t("began"), <Moment at={run.started_at} />] : null,
-        run.ended_at ? [t("ended"), <Moment at={run.ended_at} />] : null,
+        [t("queued at"), <Moment at={run.queued_at} exact />],
+        run.started_at ? [t("began"), <Moment at={run.started_at} exact />] : null,
+        run.ended_at ? [t("ended"), <Moment at={run.ended_at} exact />] : null,
+        tookOf(run) ? [t("duration"), tookOf(run)] : null,
         run.safe_state ? [t("safe state"), <span class={run.safe_state === "not_confirmed" ? "bad" : ""}>{safe[run.safe_state]}</span>] : null,
         run.reason && !(OVER.includes(run.state) && !isPassed(run)) ? [t("reason"), <English>{run.reason}</English>] : null,
         run.hazard ? [t("hazard"), run.hazard] : null,
