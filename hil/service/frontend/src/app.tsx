@@ -15,6 +15,7 @@ import { QuestionWindow } from "./shell/question.tsx";
 import { SignIn, signOut } from "./shell/sign-in.tsx";
 import { benchInSight, StopButton, UntakenStop } from "./shell/stop.tsx";
 import { useStore } from "./store.ts";
+import { FieldMessage } from "./ui/field-message.tsx";
 import { kindInWords } from "./ui/kinds.ts";
 import { Refusal } from "./ui/refusal.tsx";
 import { LostNotice } from "./views/bench-banner.tsx";
@@ -58,6 +59,7 @@ export function App(): JSX.Element {
         {who.state === "in" ? <View place={place} /> : who.state === "out" ? <SignIn /> : <p class="quiet">{t("Asking the service …")}</p>}
       </main>
       {who.state === "in" ? <footer class="foot"><a href={to.list("glossary")}>{t("Words of this page")}</a></footer> : null}
+      <FieldMessage />
       <QuestionWindow />
       <Palette />
     </>
