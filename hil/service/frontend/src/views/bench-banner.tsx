@@ -25,8 +25,9 @@ export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 
       <p class="kind">{aboutBench(bench, bench.title || bench.name)}</p>
       <Title class="headline" aria-live="polite">{level === 1 ? <><small>{t("Bench {bench}", { bench: bench.name })}</small>{" "}</> : null}{headlineOf(bench, running ? titleOf(running) : null, isEnding(running), held)}</Title>
       {running ? <p>{tx("<a>Run {run}</a>, by {person}: {doing}", { a: linkTo(to.run(running.id)), run: running.id, person: running.requested_by, doing: <English>{running.doing}</English> })}</p> : null}
-      {(held && !running?.prompt) || bench.state === "emergency_stop" ? <p>{nextOf(state)}</p> : null}
+      {held && !running?.prompt ? <p>{nextOf(state)}</p> : null}
       {bench.why && !(running && bench.state === "running") ? <p><English>{bench.why}</English></p> : null}
+      {bench.state === "emergency_stop" ? <p>{nextOf(state)}</p> : null}
       {running ? <progress max={1} value={running.share ?? 0} aria-label={t("Progress of the run")} /> : null}
       {running?.prompt ? <PromptCard prompt={running.prompt} run={running.id} reached={!bench.away_since} /> : message && !isCause(message, running) ? <p class="message" role="status"><English>{message}</English></p> : null}
       <Actions state={state} answers={!running?.prompt} />
