@@ -118,7 +118,7 @@ def test_a_model_is_identified_from_a_run_kept_designed_for_and_diagnosed(
     answer(page, "Remove")
     expect(page.get_by_text("None yet.")).to_be_visible()
     to(page, there, "runs/1")
-    page.get_by_role("link", name="Diagnose", exact=True).nth(1).click()
+    page.locator("main").get_by_role("link", name="Diagnose", exact=True).click()
     choice(page, "Model").select_option("found")
     page.get_by_label("Time limit").fill("0.1")
     page.get_by_role("button", name="Diagnose", exact=True).click()
