@@ -283,6 +283,9 @@ class ForecastData(_Data):
     predicted: dict[str, PredictedPeak]
     criteria: list[PredictedCriterion]
     bus_loads: dict[str, float] = Field({}, description="highest bus load in a millisecond, by bus")
+    largest_requests_nm: dict[str, float] = Field(
+        {}, description="largest magnitude of each requested torque, with these values of the variables"
+    )
     loops: dict[str, LoopData] = Field({}, description="by controller of the plan")
 
 

@@ -22,7 +22,7 @@ from hil.engine.bench.measured import refuse_unmeasured
 from hil.engine.prediction.batch_prediction import controller_files
 from hil.engine.prediction.forecast import Forecast, forecast
 from hil.engine.run.preflight import preflight
-from test_plans import Plan, load_plan
+from test_plans import Plan, largest_requests_nm, load_plan
 from test_plans.steps import Step
 
 if TYPE_CHECKING:
@@ -63,6 +63,7 @@ class Checked:
             "steps": len(plan.steps),
             "segments": [segment.id for segment in plan.segments],
             "predicted": peaks,
+            "largest_requests_nm": largest_requests_nm(plan),
             "bus_loads": {name: round(load, 4) for name, load in predicted.bus_loads.items()},
             "not_checked": list(plan.device_gaps),
             "criteria": [

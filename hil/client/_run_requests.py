@@ -45,9 +45,10 @@ class RunRequests(Requests):
         query = urllib.parse.urlencode(chosen, doseq=True)
         return self._one(FoundRuns, "GET", f"/run-list?{query}")
 
-    def trends(self, bench: str, plan: str) -> list[TrendData]:
-        """Each criterion of a plan on a bench over its newest runs."""
-        return self._several(TrendData, f"/trends?{urllib.parse.urlencode({'bench': bench, 'plan': plan})}")
+    def trends(self, bench: str, plan: str, like: int | None = None) -> list[TrendData]:
+        """Each criterion of a plan on a bench over its newest runs with the values of the last, or `like`."""
+        query = {"bench": bench, "plan": plan} | ({} if like is None else {"like": str(like)})
+        return self._several(TrendData, f"/trends?{urllib.parse.urlencode(query)}")
 
     def run(self, run: int) -> RunData:
         """A run."""

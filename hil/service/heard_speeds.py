@@ -1,6 +1,7 @@
-"""The speed of benches that are stopped and of which no run of this service has measured it.
+"""The speed of benches that are stopped and that no run of this service has seen to stand.
 
-After a start of the service, that is: the axle may still turn, and whoever resets the stop should know.
+After a start of the service, or after a recording that ended while the axle turned: whoever resets the stop
+should know whether it still does.
 """
 
 from __future__ import annotations
@@ -39,8 +40,10 @@ class HeardSpeeds:
             for name in list(self._service.benches):
                 bench = self._service.own(name)
                 # a state is read from the disk, so it comes last
-                measured = self._hub.has_measured(name)
-                if bench is None or measured or self._service.state(name)[0] != "emergency_stop":
+                measured = self._hub.measured_speed(name)
+                stood = measured is not None and not measured.turns
+                under_way = self._service.running(name) is not None
+                if bench is None or stood or under_way or self._service.state(name)[0] != "emergency_stop":
                     self._next_s.pop(name, None)
                     self._hub.forget_heard(name)
                 elif self._next_s.get(name, 0.0) <= time.monotonic():

@@ -97,7 +97,7 @@ class LiveHub:
         self.caches: defaultdict[str, BroadcastCache] = defaultdict(BroadcastCache)  # of each bench
         self._runs: dict[str, LiveView] = {}
         self._version: defaultdict[str, int] = defaultdict(int)
-        self._heard: dict[str, LastSpeed] = {}  # of benches that no run has measured since the start
+        self._heard: dict[str, LastSpeed] = {}  # of stopped benches that no run has seen to stand
         self._unheard: dict[str, str] = {}  # why not, by bench
 
     def run_of(self, bench: str) -> LiveView | None:
@@ -105,23 +105,26 @@ class LiveHub:
         return self._runs.get(bench)
 
     def last_speed(self, bench: str) -> LastSpeed | None:
-        """The motor's speed in the last sample of the newest run and its run-down, else as it was heard.
+        """The motor's speed as it was heard or in the last sample of the newest run and its run-down.
 
+        The newer of the two.
         None if neither is known.
         """
-        measured = self._measured(bench)
-        return self._heard.get(bench) if measured is None else last_speed(*measured)
+        known = filter(None, (self._heard.get(bench), self.measured_speed(bench)))
+        return max(known, key=lambda one: one.at, default=None)
 
     def why_no_speed(self, bench: str) -> str:
         """Why the speed of a bench could not be heard; '' if it was, or if no one has listened."""
         return self._unheard.get(bench, "")
 
-    def has_measured(self, bench: str) -> bool:
-        """Whether a run of this service has measured the speed of a bench."""
-        return self._measured(bench) is not None
+    def measured_speed(self, bench: str) -> LastSpeed | None:
+        """The motor's speed in the last sample of the newest run of this service; None if there is none."""
+        shown = self._runs.get(bench)
+        measured = shown.live.last_speed if shown else None
+        return None if measured is None else last_speed(*measured)
 
     def take_heard(self, bench: str, speed: LastSpeed) -> None:
-        """Show a speed that was heard, while no run has measured one."""
+        """Show a speed that was heard after the newest run."""
         self._heard[bench] = speed
         self._unheard.pop(bench, None)
         self.changed(bench)
@@ -209,10 +212,6 @@ class LiveHub:
         if overview is not None:
             with contextlib.suppress(OSError, HilError):
                 await asyncio.to_thread(write_overview, overview, self.overview_folder(shown.run))
-
-    def _measured(self, bench: str) -> tuple[float, datetime.datetime] | None:
-        shown = self._runs.get(bench)
-        return shown.live.last_speed if shown else None
 
     def _tell(self, bench: str) -> None:
         for event in self.viewers[bench]:

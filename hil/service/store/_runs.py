@@ -216,14 +216,18 @@ class RunStore:
                 changes["ended_at"] = min(at, now())
             return _ended(session, run, ("running",), changes, result, dut)
 
-    def criteria(self, bench: str, plan: str, dut: str | None, most: int) -> list[tuple[str, TrendPoint]]:
+    def criteria(
+        self, bench: str, plan: str, dut: str | None, most: int, like: int | None = None
+    ) -> list[tuple[str, TrendPoint]]:
         """Criteria of a plan's newest runs that ended on a bench, by name, oldest first.
 
-        Only runs of the very same text as the newest: with other values of its variables, or after a change
-        of the plan, figures are not those of one and the same test. Nor are those of a run cut short.
+        Only runs of the very same text as the newest, or as the run `like`: with other values of its
+        variables, or after a change of the plan, figures are not those of one and the same test. Nor are
+        those of a run cut short.
         """
         ended = RunRow.bench == bench, RunRow.plan == plan, RunRow.state == "ended", RunRow.verdict != "error"
-        text = select(RunRow.plan_text).where(*ended).order_by(RunRow.id.desc()).limit(1).scalar_subquery()
+        those = ended if like is None else (*ended, RunRow.id == like)
+        text = select(RunRow.plan_text).where(*those).order_by(RunRow.id.desc()).limit(1).scalar_subquery()
         newest = select(RunRow.id).where(*ended, RunRow.plan_text == text)
         newest = newest.order_by(RunRow.id.desc()).limit(most)
         chosen = select(CriterionRow, RunRow.ended_at).join(RunRow, RunRow.id == CriterionRow.run)

@@ -65,7 +65,7 @@ _DRAWN = """([canvas, roles]) => {
   const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
   const words = new Set(new Uint32Array(data.buffer));
   return roles.every((role) => {
-    const hex = style.getPropertyValue(`--series-${role}`).trim();
+    const hex = (style.getPropertyValue(`--series-${role}`) || style.getPropertyValue(`--${role}`)).trim();
     const [r, g, b] = [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
     return words.has((0xff000000 | (b << 16) | (g << 8) | r) >>> 0);
   });

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import asyncio
+import datetime
 import time
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from hil.api_schemas.api import LastSpeed
+from hil.execution.motor_speed import Heard
+from hil.service import heard_speeds
+from hil.service.live.live_hub import LiveHub, last_speed
 from tests.hil.cli.test_sim_bench import serving
 from tests.hil.service.served import Served, served
 
@@ -41,3 +48,55 @@ def test_of_a_simulated_bench_it_says_why_not(tmp_path: Path) -> None:
         assert (
             stopped(service, "sim")["speed_unknown"] == "the bench is simulated, and exists during a run only"
         )
+
+
+class _Hub(LiveHub):
+    """As after a run whose last sample is of a motor that turns, or stands."""
+
+    def __init__(self, folder: Path, speed_rad_s: float) -> None:
+        super().__init__(lambda: ["axle"], lambda bench: None, folder)
+        self._last = last_speed(speed_rad_s, datetime.datetime.now(datetime.UTC))
+
+    def measured_speed(self, bench: str) -> LastSpeed | None:
+        return self._last
+
+
+def _looks(monkeypatch: pytest.MonkeyPatch, hub: LiveHub, heard: list[float]) -> LastSpeed | None:
+    """The last speed of a stopped bench on whose buses these are heard."""
+
+    async def hear(bench: Path) -> Heard:
+        return Heard(heard.pop(0))
+
+    monkeypatch.setattr(heard_speeds, "hear_motor_speed", hear)
+    monkeypatch.setattr(heard_speeds, "_LOOK_S", 0.0)
+    monkeypatch.setattr(heard_speeds, "_TURNING_S", 0.0)
+    bench = SimpleNamespace(file=SimpleNamespace(source=Path("axle.toml")))
+    service: Any = SimpleNamespace(
+        benches=["axle"],
+        live_hub=hub,
+        own=lambda name: bench,
+        running=lambda name: None,
+        state=lambda name: ("emergency_stop", ""),
+    )
+    turns = iter([False] * 5)
+    asyncio.run(heard_speeds.HeardSpeeds(service).work(lambda: next(turns, True)))
+    return hub.last_speed("axle")
+
+
+def test_a_motor_that_a_run_left_turning_is_heard_until_it_stands(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    heard = [40.0, 0.1, 99.0]
+    last = _looks(monkeypatch, _Hub(tmp_path, 137.0), heard)
+    assert last is not None
+    assert (last.speed_rad_s, last.turns) == (0.1, False)
+    assert heard == [99.0]  # of an axle that stands no one asks any longer
+
+
+def test_a_motor_that_a_run_saw_stand_is_not_listened_to(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    last = _looks(monkeypatch, _Hub(tmp_path, 0.1), heard := [99.0])
+    assert last is not None
+    assert last.speed_rad_s == 0.1
+    assert heard == [99.0]

@@ -98,3 +98,5 @@ def test_the_store_gives_the_newest_runs_of_a_plan_and_a_dut_oldest_first(tmp_pa
     runs.take(run.id, "me")
     runs.end(run.id, "ended", exit_code=0, result=result)
     assert [point.run for _, point in runs.criteria("sim", "p", None, 100)] == [run.id]
+    assert [point.value for _, point in runs.criteria("sim", "p", "A", 100, like=2)] == [1.0, 3.0]
+    assert runs.criteria("sim", "p", None, 100, like=run.id + 1) == []

@@ -1,20 +1,23 @@
 // The frame of every view: menu, who is signed in, the emergency stop, the last refusal.
 
 import type { JSX } from "preact";
-import { useEffect, useRef } from "preact/hooks";
-import { findStopPost, Refused } from "./api/client.ts";
+import { useEffect } from "preact/hooks";
+import { findStopPost } from "./api/client.ts";
 import { titleOf, to } from "./addresses.ts";
 import { refusal } from "./data.ts";
-import { English } from "./i18n/english.tsx";
 import { t } from "./i18n/text.ts";
+import { dismiss } from "./question.ts";
 import { usePlace, useTitle } from "./router.ts";
 import { session } from "./session.ts";
 import { Aside, Menu } from "./shell/menu.tsx";
 import { Palette, paletteOpen } from "./shell/palette.tsx";
+import { QuestionWindow } from "./shell/question.tsx";
 import { SignIn, signOut } from "./shell/sign-in.tsx";
 import { benchInSight, StopButton, UntakenStop } from "./shell/stop.tsx";
 import { useStore } from "./store.ts";
+import { FieldMessage } from "./ui/field-message.tsx";
 import { kindInWords } from "./ui/kinds.ts";
+import { Refusal } from "./ui/refusal.tsx";
 import { LostNotice } from "./views/bench-banner.tsx";
 import { View } from "./views/view.tsx";
 
@@ -33,6 +36,7 @@ export function App(): JSX.Element {
   useEffect(() => {
     if ((!("bench" in place) || place.view === "wall") && place.view !== "run") benchInSight.value = "";
     refusal.value = null;
+    dismiss(); // it was of the view before
   }, [place]);
   if (place.view === "wall" && who.state === "in") return <main id="main"><View place={place} /></main>;
   return (
@@ -51,20 +55,13 @@ export function App(): JSX.Element {
       <main id="main" tabIndex={-1}>
         <UntakenStop />
         <LostNotice />
-        <Refusal />
+        <Refusal of={refusal} />
         {who.state === "in" ? <View place={place} /> : who.state === "out" ? <SignIn /> : <p class="quiet">{t("Asking the service …")}</p>}
       </main>
       {who.state === "in" ? <footer class="foot"><a href={to.list("glossary")}>{t("Words of this page")}</a></footer> : null}
+      <FieldMessage />
+      <QuestionWindow />
       <Palette />
     </>
   );
-}
-
-function Refusal(): JSX.Element | null {
-  const error = useStore(refusal), shown = useRef<HTMLParagraphElement>(null);
-  useEffect(() => shown.current?.scrollIntoView({ block: "nearest" }), [error]); // what was refused may stand far below
-  if (!error) return null;
-  if (!(error instanceof Refused)) return <p class="alarm" role="alert" ref={shown}><English>{error.message}</English></p>;
-  // What is wrong and what to do are sentences of their own, each in the reader's language where it is known.
-  return <p class="alarm" role="alert" ref={shown}>{error.where ? <><English>{error.where}</English>{": "}</> : null}<English>{error.what}</English>{error.fix ? <>{"\n"}<English>{error.fix}</English></> : null}</p>;
 }

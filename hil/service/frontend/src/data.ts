@@ -42,18 +42,19 @@ export function useData<T>(path: string | null, everyMs = 0): Asked<T> {
   return { data: mine ? found.data : null, error: mine ? found.error : null, loading: found.loading || !mine, again };
 }
 
-// Whether the service has answered that there is no such thing.
-export const isMissing = ({ error }: { error: Error | null }): boolean => error instanceof Refused && error.status === 404;
+// Whether the service has answered that there is no such thing, or that nothing can have this name.
+export const isMissing = ({ error }: { error: Error | null }): boolean => error instanceof Refused && [404, 422].includes(error.status);
 
 // What was refused last, shown above every view until something else is done.
 export const refusal = new Store<Error | null>(null);
 
-export async function attempt<T>(work: () => Promise<T> | T): Promise<T | null> {
-  refusal.value = null;
+// `at`: where a refusal is shown, if not above the view.
+export async function attempt<T>(work: () => Promise<T> | T, at: Store<Error | null> = refusal): Promise<T | null> {
+  refusal.value = at.value = null;
   try {
     return await work();
   } catch (error) {
-    refusal.value = error as Error;
+    if (!(error instanceof DOMException && error.name === "AbortError")) at.value = error as Error; // what nobody waits for any more
     return null;
   }
 }

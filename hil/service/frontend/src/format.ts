@@ -90,6 +90,11 @@ export const clockTime = (ms: number): string => times.format(new Date(ms));
 
 export const moment = (iso: string): string => moments.format(new Date(iso));
 
+const exactMoments = new Intl.DateTimeFormat(LOCALE, { dateStyle: "medium", timeStyle: "medium" });
+
+// To the second: of what happened, where the order of things matters.
+export const exactMoment = (iso: string): string => exactMoments.format(new Date(iso));
+
 const hours = new Intl.DateTimeFormat(LOCALE, { timeStyle: "short" });
 
 // A moment that is near: of today, the time alone.

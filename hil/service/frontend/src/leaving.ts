@@ -1,6 +1,7 @@
 // Whether somebody is asked before the page shows something else: while what they typed is not saved.
 
 import { t } from "./i18n/text.ts";
+import { agreed } from "./question.ts";
 
 const unsaved = new Set<object>();
 
@@ -10,8 +11,11 @@ export function noteUnsaved(of: object, is: boolean): void {
   else unsaved.delete(of);
 }
 
-// Views inside the page.
-export const mayLeave = (): boolean => unsaved.size === 0 || confirm(t("What you typed is not saved at the service. Leave it? A draft of it stays in this browser."));
+export const isAllSaved = (): boolean => unsaved.size === 0;
 
-// Other pages, and this one loaded anew: the browser asks in its own words.
+// Views inside the page.
+export const agreedToLeave = (): Promise<boolean> =>
+  agreed(t("What you typed is not saved at the service. Leave it? A draft of it stays in this browser."), t("Leave it"), t("Stay here"));
+
+// Other pages, and this one loaded anew: there the browser asks in its own words, and no page can.
 addEventListener("beforeunload", (event) => { if (unsaved.size) event.preventDefault(); });

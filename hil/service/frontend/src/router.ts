@@ -4,7 +4,7 @@ import { useEffect, useMemo } from "preact/hooks";
 import { placeOf, placeOfFormer, type Place } from "./addresses.ts";
 import { API } from "./api/client.ts";
 import { t } from "./i18n/text.ts";
-import { mayLeave } from "./leaving.ts";
+import { agreedToLeave, isAllSaved } from "./leaving.ts";
 import { Store, useStore } from "./store.ts";
 
 const former = placeOfFormer(location.pathname, location.hash);
@@ -13,13 +13,29 @@ if (former) history.replaceState(null, "", former);
 const here = (): string => location.pathname + location.search;
 const address = new Store(here());
 
+let leaving = false; // somebody has agreed to the step back that comes next
+
 addEventListener("popstate", () => {
-  if (mayLeave()) address.value = here();
-  else history.pushState(null, "", address.value);
+  if (leaving || isAllSaved()) {
+    leaving = false;
+    address.value = here();
+    return;
+  }
+  history.pushState(null, "", address.value); // the view stays, and its address with it, until somebody agrees
+  void agreedToLeave().then((agreed) => {
+    if (!agreed) return;
+    leaving = true;
+    history.back();
+  });
 });
 
 export function go(path: string, replace = false): void {
-  if (path === here() || (!replace && !mayLeave())) return;
+  if (path === here()) return;
+  if (replace || isAllSaved()) show(path, replace);
+  else void agreedToLeave().then((agreed) => { if (agreed) show(path, false); });
+}
+
+function show(path: string, replace: boolean): void {
   if (replace) history.replaceState(null, "", path); else history.pushState(null, "", path);
   address.value = here();
   if (!replace) scrollTo(0, 0);

@@ -54,6 +54,7 @@ def test_a_text_is_checked_and_foreseen_and_nothing_is_kept(there: Served) -> No
     forecast = there.post("/forecasts", wanted)
     assert forecast["fits"]
     assert forecast["criteria"][0]["id"] == "s.peak_shaft_torque"
+    assert forecast["largest_requests_nm"] == {"driving_torque": 150.0}  # with the value as it was chosen
     with pytest.raises(RefusedError, match="torque_nm") as refused:
         there.post("/forecasts", {**wanted, "values": {"torque_nm": 900}})
     assert refused.value.status == 422

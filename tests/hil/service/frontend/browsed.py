@@ -40,6 +40,26 @@ def region(page: playwright.Page, name: str) -> playwright.Locator:
     return page.get_by_role("region", name=name, exact=True)
 
 
+def answer(page: playwright.Page, button: str) -> None:
+    """Press a button of the question that the page asks."""
+    asked = page.get_by_role("alertdialog")
+    asked.get_by_role("button", name=button, exact=True).click()
+    expect(asked).to_have_count(0)
+
+
+def reset_stop(page: playwright.Page, there: Served, within: playwright.Locator) -> None:
+    """Reset the emergency stop of the bench sim, of which the axle stands."""
+    within.get_by_role("button", name="It is safe: reset the emergency stop").click()
+    asked = page.get_by_role("alertdialog")
+    for _ in range(200):  # a look that is some seconds old is asked about
+        if there.get("/benches/sim")["state"] != "emergency_stop":
+            return
+        if asked.is_visible():
+            answer(page, "It stands still: reset")
+        page.wait_for_timeout(100)
+    pytest.fail("the stop was not reset")
+
+
 def choice(page: playwright.Page, name: str) -> playwright.Locator:
     """A list to choose from, by what stands before it."""
     return page.get_by_role("combobox", name=name, exact=True)

@@ -3,6 +3,13 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { queryFrom, sorted, toAddress, toService } from "../../../../hil/service/frontend/src/views/runs/runs-query.ts";
+import { tookOf } from "../../../../hil/service/frontend/src/views/runs/run-values.ts";
+
+test("a run took from its beginning to its end, and one that has not ended took nothing yet", () => {
+  const began = "2026-11-28T10:00:00Z";
+  assert.equal(tookOf({ started_at: began, ended_at: "2026-11-28T10:02:05Z" }), "2 min 5 s");
+  assert.deepEqual([tookOf({ started_at: began, ended_at: null }), tookOf({ started_at: null, ended_at: began })], ["", ""]);
+});
 
 const of = (text: string) => queryFrom(new URLSearchParams(text));
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright import sync_api as playwright
 
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, heading, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, answer, expect, heading, to
 from tests.hil.service.served import ASKING, Served, served
 from tests.hil.service.working import bench_called, working
 
@@ -43,6 +43,6 @@ def test_the_page_tells_where_a_bench_is_and_that_its_agent_is_away(
     expect(page.get_by_role("button", name="Continue")).to_be_hidden()
     page.get_by_role("button", name="Emergency stop cell-3").click()
     expect(heading(page, "Emergency stop asked for, NOT CONFIRMED")).to_be_visible()
-    page.on("dialog", lambda dialog: dialog.accept())
     page.get_by_role("button", name="Release from its agent").click()
+    answer(page, "Release from its agent")
     expect(page.get_by_role("cell", name="interrupted")).to_be_visible()

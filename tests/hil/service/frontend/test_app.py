@@ -10,7 +10,7 @@ import pytest
 from playwright import sync_api as playwright
 
 from hil.service.serving import make_token
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, reset_stop, to
 from tests.hil.service.looks import expect_drawn, refuse_hard_to_use
 from tests.hil.service.served import ASKING, SHORT, Served, environment_of, served
 
@@ -59,8 +59,7 @@ def test_a_plan_is_foreseen_queued_watched_stopped_and_found(page: playwright.Pa
     expect(heading(report.value, re.compile("A plan that asks"))).to_be_visible()
     report.value.close()
     to(page, there, "#sim")  # as the former page had it
-    page.on("dialog", lambda asked: asked.accept())  # whether the axle stands, if it was not seen to
-    page.get_by_role("button", name="It is safe: reset the emergency stop").click()
+    reset_stop(page, there, region(page, "State of sim"))
     expect(heading(page, "Free")).to_be_visible()
 
 

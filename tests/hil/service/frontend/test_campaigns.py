@@ -11,7 +11,7 @@ from playwright import sync_api as playwright
 
 from tests.hil.analysis.tuning.trials import PLAN
 from tests.hil.campaign.short import CAMPAIGN
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, answer, choice, expect, heading, region, to
 from tests.hil.service.jobs.test_campaigns import LONG
 from tests.hil.service.looks import expect_drawn, refuse_hard_to_use
 from tests.hil.service.served import Served, served
@@ -119,7 +119,7 @@ def test_a_campaign_is_begun_by_the_form_and_removed(page: playwright.Page, ther
     expect(heading(page, re.compile("by_form ended"))).to_be_visible()
     expect(region(page, "Share that passes")).to_contain_text("gain stabilization")
     expect(region(page, "Simulated")).to_contain_text("6 of 6")
-    page.once("dialog", lambda dialog: dialog.accept())
     page.get_by_role("button", name=re.compile("Remove: campaign")).click()
+    answer(page, "Remove")
     expect(heading(page, "Campaigns")).to_be_visible()
     expect(page.get_by_text("by_form")).to_have_count(0)

@@ -34,6 +34,14 @@ def test_the_list_of_runs_to_compare_with_says_why_it_is_empty(page: playwright.
     expect(page.get_by_text("No other run has ended yet")).to_be_visible()
 
 
+def test_a_run_is_not_compared_with_itself(page: playwright.Page, there: Served) -> None:
+    to(page, there, "compare?runs=1,1")
+    expect(page.get_by_text("A run is not compared with itself: choose another one.")).to_be_visible()
+    expect(page.get_by_role("link", name="run 1", exact=True)).to_have_count(1)
+    expect(page.locator("figure.plot")).to_have_count(0)
+    expect(page.get_by_text("Choose two runs or more")).to_be_visible()
+
+
 def test_a_run_of_a_copy_is_compared_with_the_best_run_in_one_click(
     page: playwright.Page, there: Served
 ) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 from playwright import sync_api as playwright
 
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, answer, choice, expect, heading, region, to
 from tests.hil.service.looks import refuse_hard_to_use
 from tests.hil.service.served import SHORT, Served, served
 
@@ -31,7 +31,7 @@ def refusals() -> tuple[str, ...]:
 
 @pytest.fixture
 def asked(page: playwright.Page) -> list[str]:
-    """What the page has asked, each of which was declined."""
+    """What the browser has asked in a window of its own, each of which was declined."""
     questions: list[str] = []
 
     def decline(dialog: playwright.Dialog) -> None:
@@ -61,8 +61,8 @@ def test_a_plan_that_was_typed_outlives_a_reload_and_is_discarded_when_one_says_
     notice = page.get_by_text(_RESTORED)
     expect(notice).to_be_visible()
     refuse_hard_to_use(page)
-    page.once("dialog", lambda dialog: dialog.accept())
     page.get_by_role("button", name="Discard it").click()
+    answer(page, "Discard it")
     expect(text).to_have_value(re.compile("upper: 400"))
     expect(notice).to_have_count(0)
     page.reload()
@@ -78,18 +78,40 @@ def test_leaving_what_is_not_saved_is_asked_about(
     page.get_by_role("link", name="Edit", exact=True).click()
     text = _typed(page, "Text of the plan", "upper: 400", "upper: 372")
     page.get_by_role("link", name="Runs", exact=True).first.click()
+    answer(page, "Stay here")
     expect(text).to_be_visible()
     page.go_back()
+    answer(page, "Stay here")
     expect(text).to_have_value(re.compile("upper: 372"))
     assert page.url.endswith("write=on")
     page.evaluate("location.reload()")
     expect(text).to_have_value(re.compile("upper: 372"))
     expect(page.get_by_text(_RESTORED)).to_have_count(0)  # it was never left
-    assert asked == ["confirm", "confirm", "beforeunload"]
+    assert asked == ["beforeunload"]
     text.fill(text.input_value().replace("upper: 372", "upper: 400"))
     page.get_by_role("link", name="Runs", exact=True).first.click()
     expect(heading(page, "Runs")).to_be_visible()  # nothing would be lost
-    assert len(asked) == 3
+    assert len(asked) == 1
+
+
+def test_a_step_back_that_is_agreed_to_goes_where_it_went(
+    page: playwright.Page, there: Served, asked: list[str]
+) -> None:
+    there.give("shared", FIRST)
+    to(page, there, "runs")
+    page.get_by_role("link", name="Plans", exact=True).first.click()
+    page.get_by_role("link", name="shared", exact=True).click()
+    page.get_by_role("link", name="Edit", exact=True).click()
+    _typed(page, "Text of the plan", "upper: 400", "upper: 385")
+    page.go_back()
+    answer(page, "Leave it")
+    expect(page).to_have_url(re.compile("/plans/shared$"))
+    expect(page.get_by_label("Text of the plan")).to_have_count(0)
+    page.go_back()
+    expect(heading(page, "Plans")).to_be_visible()
+    page.go_back()
+    expect(heading(page, "Runs")).to_be_visible()
+    assert asked == []
 
 
 def test_a_saved_text_leaves_no_draft(page: playwright.Page, there: Served, asked: list[str]) -> None:
@@ -172,8 +194,8 @@ def test_a_draft_of_a_tab_that_was_closed_is_restored_in_another_once(
         to(page, there, "plans/shared?write=on")
         text = page.get_by_label("Text of the plan")
         expect(text).to_have_value(re.compile("upper: 380"))
-        page.once("dialog", lambda dialog: dialog.accept())
         page.get_by_role("button", name="Discard it").click()
+        answer(page, "Discard it")
         page.reload()
         expect(text).to_have_value(re.compile("upper: 400"))
 
@@ -186,8 +208,8 @@ def test_theirs_is_taken_and_written_on_from(page: playwright.Page, there: Serve
     page.reload()  # the draft is of the text before
     expect(page.get_by_text("The text at the service has changed since")).to_be_visible()
     page.get_by_role("button", name="Keep as shared").click()
-    page.once("dialog", lambda dialog: dialog.accept())
     page.get_by_role("button", name="Discard mine and take theirs").click()
+    answer(page, "Discard it")
     expect(text).to_have_value(re.compile("upper: 390"))
     expect(page.get_by_text(_RESTORED)).to_have_count(0)
     _typed(page, "Text of the plan", "upper: 390", "upper: 391")

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from playwright import sync_api as playwright
 
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, answer, choice, expect, heading, region, to
 from tests.hil.service.looks import refuse_hard_to_use
 from tests.hil.service.served import ASKING, SHORT, Served, served
 
@@ -30,8 +30,8 @@ def test_a_note_outlives_leaving_and_a_reload_until_it_is_added(page: playwright
     to(page, there, "runs/1")
     note = page.get_by_label("Note", exact=True)
     note.fill("the left shaft\nwas warm")
-    page.once("dialog", lambda dialog: dialog.accept())
     page.get_by_role("link", name="Runs", exact=True).first.click()
+    answer(page, "Leave it")
     expect(heading(page, "Runs")).to_be_visible()
     page.go_back()
     expect(note).to_have_value("the left shaft\nwas warm")

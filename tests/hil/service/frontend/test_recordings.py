@@ -11,7 +11,7 @@ from playwright import sync_api as playwright
 
 from hil.api_schemas.recording import RecordingWanted
 from hil.client import Client
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, answer, choice, expect, heading, region, to
 from tests.hil.service.looks import expect_drawn, refuse_hard_to_use
 from tests.hil.service.recordings.test_given_recordings import excited_csv
 from tests.hil.service.served import Served, served
@@ -47,8 +47,8 @@ def test_a_recording_is_given_identified_from_and_removed(
     page.get_by_role("button", name="Identify", exact=True).click()
     expect(heading(page, re.compile("Identification 1 ended"))).to_be_visible(timeout=240_000)
     page.get_by_role("link", name="recording 1").click()
-    page.once("dialog", lambda dialog: dialog.accept())
     page.get_by_role("button", name="Remove the recording").click()
+    answer(page, "Remove")
     expect(page.get_by_text("None yet: give one above")).to_be_visible()
 
 

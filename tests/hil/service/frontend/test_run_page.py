@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from playwright import sync_api as playwright
 
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, heading, region, to
-from tests.hil.service.looks import refuse_hard_to_use
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, heading, region, reset_stop, to
+from tests.hil.service.looks import expect_drawn, refuse_hard_to_use
 from tests.hil.service.served import ASKING, SHORT, Served, served
 
 pytestmark = IN_A_BROWSER
@@ -108,6 +108,50 @@ def test_a_failed_run_begins_with_the_criterion_that_failed_and_leads_to_its_pla
     refuse_hard_to_use(page)
 
 
+def test_the_limit_that_a_run_failed_is_drawn_with_its_name_in_its_own_plots(
+    page: playwright.Page, there: Served
+) -> None:
+    failed = there.queue("failing")
+    there.over(failed)
+    to(page, there, f"runs/{failed}")
+    plot = page.get_by_role(
+        "img", name=re.compile("^Plot 2: shaft torque; Peak of the shaft torque: limit 90")
+    )
+    expect_drawn(plot, "gain", "fail")
+
+
+def test_moments_of_a_run_are_to_the_second_and_its_duration_stands_beside_them(
+    page: playwright.Page, there: Served
+) -> None:
+    there.over(there.queue())
+    to(page, there, "runs/1")
+    facts = page.locator(".facts")
+    for name in ("queued at", "began", "ended"):
+        expect(facts).to_contain_text(re.compile(rf"{name}\w+ \d+, \d+, \d+:\d\d:\d\d"))
+    expect(facts).to_contain_text(re.compile(r"duration\d[\d.]*\ss|duration\d+ min"))
+    to(page, there, "runs")
+    table = region(page, "Runs, table")
+    expect(table.get_by_role("columnheader", name="duration")).to_be_visible()
+    expect(table.locator("tbody")).to_contain_text(re.compile(r"\d\ss"))
+    refuse_hard_to_use(page)
+    to(page, there, "audit")
+    expect(page.locator("tbody time").first).to_have_text(re.compile(r":\d\d:\d\d"))
+
+
+def test_a_run_that_failed_stands_in_the_list_of_benches(page: playwright.Page, there: Served) -> None:
+    to(page, there, "benches")
+    expect(page.get_by_text("No run has failed since")).to_be_visible()
+    failed, passed = there.queue("failing"), there.queue("short")
+    there.over(failed)
+    there.over(passed)
+    failures = page.get_by_role("region", name=re.compile("^Runs that failed since "))
+    expect(failures.get_by_role("listitem")).to_have_count(1)
+    expect(failures).to_contain_text(f"fail Run {failed}: failing, by local")
+    refuse_hard_to_use(page)
+    failures.get_by_role("link", name=f"Run {failed}").click()
+    expect(region(page, "Why it did not pass")).to_be_visible()
+
+
 def test_a_passed_run_says_beside_its_verdict_that_a_quantity_did_not_settle(
     page: playwright.Page, there: Served
 ) -> None:
@@ -190,7 +234,7 @@ def test_a_run_that_was_stopped_has_the_button_that_resets_the_stop(
     state = region(page, "State of sim")
     expect(state).to_contain_text("emergency stop since")
     refuse_hard_to_use(page)
-    state.get_by_role("button", name="It is safe: reset the emergency stop").click()
+    reset_stop(page, there, state)
     expect(state).to_have_count(0)
     assert there.get("/benches/sim")["state"] == "free"
 

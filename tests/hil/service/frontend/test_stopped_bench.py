@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import datetime
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from playwright import sync_api as playwright
 
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, expect, heading, region, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, answer, expect, heading, region, reset_stop, to
 from tests.hil.service.looks import refuse_hard_to_use
-from tests.hil.service.served import SHORT, Served, served
+from tests.hil.service.served import ASKING, SHORT, Served, served
 
 pytestmark = IN_A_BROWSER
 _RESET = "It is safe: reset the emergency stop"
@@ -30,7 +31,7 @@ def test_a_stop_is_reset_in_the_list_of_benches(page: playwright.Page, there: Se
     card = page.get_by_role("listitem").filter(has_text="sim")
     expect(card).to_contain_text("the motor stood")
     refuse_hard_to_use(page)
-    card.get_by_role("button", name=_RESET).click()
+    reset_stop(page, there, card)
     expect(card).to_contain_text("Free")
     assert there.get("/benches/sim")["state"] == "free"
 
@@ -40,20 +41,54 @@ def test_where_no_speed_is_known_a_reset_asks_whether_the_axle_stands(
 ) -> None:
     there.post("/benches/sim/emergency-stop")  # nothing was measured since the service was started
     to(page, there, "benches/sim")
-    state, asked = region(page, "State of sim"), list[str]()
+    state = region(page, "State of sim")
     expect(state).to_contain_text("The speed of the motor is not known: the bench is simulated, and exists")
-
-    def dismiss(dialog: playwright.Dialog) -> None:
-        asked.append(dialog.message)
-        dialog.dismiss()
-
-    page.once("dialog", dismiss)
     state.get_by_role("button", name=_RESET).click()
-    assert "Does the axle of sim stand still now?" in asked[0]
+    expect(page.get_by_role("alertdialog")).to_contain_text("Does the axle of sim stand still now?")
+    refuse_hard_to_use(page)
+    answer(page, "Cancel")
     assert there.get("/benches/sim")["state"] == "emergency_stop"
-    page.once("dialog", lambda dialog: dialog.accept())
     state.get_by_role("button", name=_RESET).click()
+    answer(page, "It stands still: reset")
     expect(heading(page, "Bench sim Free")).to_be_visible()
+
+
+def test_a_speed_that_is_old_when_one_confirms_is_asked_about_anew(
+    page: playwright.Page, there: Served
+) -> None:
+    there.post("/benches/sim/emergency-stop")
+    bench, looked = there.get("/benches/sim"), datetime.datetime.now(datetime.UTC)
+
+    def seen(speed_rad_s: float, ago_s: float) -> dict[str, object]:
+        at = (looked - datetime.timedelta(seconds=ago_s)).isoformat()
+        return {**bench, "last_speed": {"speed_rad_s": speed_rad_s, "at": at, "turns": True}}
+
+    page.route("**/api/v1/benches", lambda route: route.fulfill(json=[seen(137, 20)]))
+    page.route("**/api/v1/benches/sim", lambda route: route.fulfill(json=seen(42, 3)))
+    to(page, there, "benches")
+    page.get_by_role("button", name=_RESET).click()
+    asked = page.get_by_role("alertdialog")
+    expect(asked).to_contain_text("the motor turned at 137")
+    asked.get_by_role("button", name="It stands still: reset").click()
+    expect(asked).to_contain_text("the motor turned at 42.0")  # as it is by now
+    page.unroute("**/api/v1/benches")
+    assert there.get("/benches/sim")["state"] == "emergency_stop"
+    answer(page, "It stands still: reset")
+    expect(page.get_by_role("listitem").filter(has_text="sim")).to_contain_text("Free")
+
+
+def test_a_stop_says_at_once_when_it_can_be_reset(page: playwright.Page, there: Served) -> None:
+    there.give("asking", ASKING)
+    run = there.queue("asking")
+    there.until(run, lambda found: found["prompt"])
+    to(page, there, "benches/sim")
+    page.get_by_role("button", name="Emergency stop sim").click()
+    state = region(page, "State of sim")
+    expect(state).to_contain_text("Stopping: the bench goes to its safe state")
+    expect(state).to_contain_text("When the run has ended, an engineer can reset the emergency stop.")
+    there.over(run)
+    expect(state).to_contain_text("When it is safe, an engineer resets the emergency stop.")
+    expect(state.get_by_role("button", name=_RESET)).to_be_visible()
 
 
 def test_a_run_that_was_stopped_before_it_began_says_so_in_the_list(

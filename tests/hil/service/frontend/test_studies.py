@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from playwright import sync_api as playwright
 
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, answer, choice, expect, heading, region, to
 from tests.hil.service.jobs.test_studies import CHIRP
 from tests.hil.service.looks import expect_drawn, refuse_hard_to_use
 from tests.hil.service.served import SHORT, Served, served
@@ -114,11 +114,11 @@ def test_a_model_is_identified_from_a_run_kept_designed_for_and_diagnosed(
     expect(choice(page, "Model")).to_have_value("found")
     expect(region(page, "Margins and peaks").locator("table")).to_contain_text("gain margin")
     page.go_back()
-    page.once("dialog", lambda dialog: dialog.accept())
     page.get_by_role("button", name="Remove").click()
+    answer(page, "Remove")
     expect(page.get_by_text("None yet.")).to_be_visible()
     to(page, there, "runs/1")
-    page.get_by_role("link", name="Diagnose", exact=True).nth(1).click()
+    page.locator("main").get_by_role("link", name="Diagnose", exact=True).click()
     choice(page, "Model").select_option("found")
     page.get_by_label("Time limit").fill("0.1")
     page.get_by_role("button", name="Diagnose", exact=True).click()

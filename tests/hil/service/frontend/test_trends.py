@@ -25,13 +25,15 @@ def _ran(data: Path) -> None:
     engine = open_database(environment_of(data)["HIL_DATABASE"] or f"sqlite:///{data / 'service.sqlite'}")
     runs, bench = RunStore(engine), BenchStore(engine, "earlier")
     bench.hold("sim")
-    for number, (value, dut) in enumerate(_RUNS):
-        run, _ = runs.add(NewRun("p", "P", "name: p", "p.yaml", "sim", {}, "anna"), approved=True)
+    of_q = [("q", (torque, "A"), {"torque_nm": torque}) for torque in (50.0, 50.0, 60.0)]
+    for number, (plan, (value, dut), values) in enumerate([*of_q, *(("p", one, {}) for one in _RUNS)]):
+        text = f"name: {plan} # {values}"
+        run, _ = runs.add(NewRun(plan, plan, text, "p.yaml", "sim", values, "anna"), approved=True)
         runs.take(run.id, "earlier")
         one = CriterionResult(id="s.peak", value=value, unit="N m", upper=330.0, verdict="pass")
         creep = CriterionResult(id="s.creep", value=1.0 + 0.1 * number, unit="1", upper=9.0, verdict="pass")
         result = RunResult(
-            verdict="pass", plan="p", bench="sim", real_time_factor=1.0, bench_time_s=1.0,
+            verdict="pass", plan=plan, bench="sim", real_time_factor=1.0, bench_time_s=1.0,
             safe_state="confirmed", criteria=(one, creep),
         )  # fmt: skip
         runs.end(run.id, "ended", exit_code=0, result=result, dut=dut)
@@ -71,7 +73,7 @@ def test_a_drift_is_told_before_it_reaches_the_limit(page: playwright.Page, ther
     expect(trend.get_by_role("status")).to_contain_text("May drift: s.creep (six values in a row rising")
     trend.get_by_role("button", name="s.creep").click()
     expect(choice(page, "Criterion")).to_have_value("s.creep")
-    expect(trend).to_contain_text("six values in a row rising or falling (Nelson's rule 3): runs 1 to 11")
+    expect(trend).to_contain_text("six values in a row rising or falling (Nelson's rule 3): runs 4 to 14")
     expect_drawn(trend, "phase")  # rings around the values
 
 
@@ -85,6 +87,25 @@ def test_trends_open_with_the_plan_and_criterion_that_have_values(
     expect(choice(page, "Criterion")).to_have_value("s.creep")
     to(page, there, "trends?bench=none")
     expect(page.get_by_role("alert")).to_contain_text("there is no bench 'none'")
+
+
+def test_a_trend_says_of_which_values_it_is_and_offers_the_others(
+    page: playwright.Page, there: Served
+) -> None:
+    to(page, there, "trends?bench=sim&plan=q&criterion=s.peak")
+    trend = region(page, "Trend over runs of q")
+    expect(trend).to_contain_text("with the values and the plan's text of run 3: torque_nm = 60.")
+    expect(trend).to_contain_text("mean 60.0 N m")
+    choice(page, "Values").select_option("torque_nm = 50 (2 runs)")
+    expect(trend).to_contain_text("with the values and the plan's text of run 2: torque_nm = 50.")
+    expect(trend).to_contain_text("mean 50.0 N m")
+    refuse_hard_to_use(page)
+    page.reload()
+    expect(trend).to_contain_text("mean 50.0 N m")
+    to(page, there, "trends?bench=sim&plan=p")
+    trend = region(page, "Trend over runs of p")
+    expect(trend).to_contain_text("with the values and the plan's text of run 14.")
+    expect(choice(page, "Values")).to_have_count(0)  # there are no others
 
 
 def test_a_trend_has_an_address_of_its_own(page: playwright.Page, there: Served) -> None:

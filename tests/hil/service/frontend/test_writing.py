@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 from playwright import sync_api as playwright
 
-from tests.hil.service.frontend.browsed import IN_A_BROWSER, choice, expect, heading, region, to
+from tests.hil.service.frontend.browsed import IN_A_BROWSER, answer, choice, expect, heading, region, to
 from tests.hil.service.looks import refuse_hard_to_use
 from tests.hil.service.served import SHORT, Served, served
 
@@ -99,8 +99,8 @@ def test_a_run_is_tagged_noted_and_found(page: playwright.Page, there: Served) -
     expect(rows).to_have_count(1)
     expect(rows.first).to_contain_text("axle-7")
     rows.first.get_by_role("link", name="1", exact=True).click()
-    page.once("dialog", lambda dialog: dialog.accept())
     notes.get_by_role("button", name="Remove").click()
+    answer(page, "Remove")
     expect(notes.get_by_role("article")).to_have_count(0)
     notes.get_by_role("combobox", name="Tag").fill("騒音_2")
     notes.get_by_role("button", name="Add", exact=True).click()

@@ -17,7 +17,7 @@ export const versionPath = (kind: VersionedKind, name: string, number: number): 
 interface Options {
   kind: VersionedKind;
   name: string;
-  textPath: string; // of today's text
+  textPath: string | null; // of today's text; null where it was removed
   editPath: string; // where it is edited; the version is added
 }
 
@@ -31,11 +31,11 @@ export function Versions({ kind, name, textPath, editPath }: Options): JSX.Eleme
         <thead><tr><th scope="col" class="number">{t("version")}</th><th scope="col">{t("name")}</th><th scope="col">{t("given by")}</th><th scope="col">{t("given")}</th><td /></tr></thead>
         <tbody>{versions.map((one) => (
           <tr key={one.number}><td class="number">{one.number}</td><th scope="row">{one.name}</th><td>{one.given_by}</td><td><Moment at={one.given_at} /></td>
-            <td><span class="buttons"><button type="button" aria-pressed={shown === one.number} aria-label={t("Differences of version {number} from today's text", { number: one.number })} onClick={() => setShown(shown === one.number ? null : one.number)}>{t("Differences")}</button>{may("engineer") ? <a class="button" href={`${editPath}&version=${one.number}`} aria-label={t("Write on from version {number}", { number: one.number })}>{t("Write on")}</a> : null}</span></td>
+            <td><span class="buttons">{textPath === null ? null : <button type="button" aria-pressed={shown === one.number} aria-label={t("Differences of version {number} from today's text", { number: one.number })} onClick={() => setShown(shown === one.number ? null : one.number)}>{t("Differences")}</button>}{may("engineer") ? <a class="button" href={`${editPath}&version=${one.number}`} aria-label={t("Write on from version {number}", { number: one.number })}>{t("Write on")}</a> : null}</span></td>
           </tr>
         ))}</tbody>
       </table></Scroll>
-      {shown !== null ? <Differences key={shown} before={versionPath(kind, name, shown)} after={textPath} /> : null}
+      {shown !== null && textPath !== null ? <Differences key={shown} before={versionPath(kind, name, shown)} after={textPath} /> : null}
     </Section>
   );
 }

@@ -21,13 +21,13 @@ export interface BoardState {
 export const FOLLOW_S = 30;
 const REST_MS = 150; // browsers take an address that changes in every frame for a mistake, and stop taking it
 
-export function useBoardState(plan: string, channels: readonly string[], live: boolean): BoardState {
+export function useBoardState(plan: string, channels: readonly string[], failed: readonly string[], live: boolean): BoardState {
   const [query] = useQuery();
   const [kept, keep] = useKept(plan);
   const [chosen, setChosen] = useState(0);
   const text = query.get("plots") ?? kept;
   const known = channels.join(",");
-  const plots = useMemo(() => (text ? layoutOf(text).map((plot) => ({ ...plot, channels: plot.channels.filter((one) => channels.includes(one)) })) : usualLayout(channels)), [text, known]);
+  const plots = useMemo(() => (text ? layoutOf(text).map((plot) => ({ ...plot, channels: plot.channels.filter((one) => channels.includes(one)) })) : usualLayout(channels, failed)), [text, known, failed.join()]);
   const time = query.get("t"), marks = query.get("c");
   const [moving, setMoving] = useState<Shown | null>(null); // of a live board, while it moves
   const resting = useRef(0), dropping = useRef(0);

@@ -2,7 +2,7 @@
 
 import type { JSX } from "preact";
 import { useMemo, useRef, useState } from "preact/hooks";
-import type { LimitLine, Mark, RunView } from "../api/types.ts";
+import type { Mark, RunView } from "../api/types.ts";
 import { t } from "../i18n/text.ts";
 import { useLive, type Live } from "../live.ts";
 import { Store, useStore } from "../store.ts";
@@ -10,6 +10,7 @@ import { useBoardState } from "./board-state.ts";
 import { ChannelList } from "./channel-list.tsx";
 import { CursorTable } from "./cursor-table.tsx";
 import { channelsOf, withChannel, withoutChannel } from "./layout.ts";
+import type { ChannelLimit } from "./limit-lines.ts";
 import { PlotCard } from "./plot-card.tsx";
 import { isFollowing, panned, zoomed, type Range } from "./range.ts";
 import { useSource } from "./source.ts";
@@ -18,12 +19,14 @@ import { Toolbar } from "./toolbar.tsx";
 export interface BoardOptions {
   view: RunView;
   plan: string;
+  limits: ChannelLimit[];
   bench: string | null; // of a run that goes on: its samples are taken from there
 }
 
-export function Board({ view, plan, bench }: BoardOptions): JSX.Element {
+export function Board({ view, plan, limits, bench }: BoardOptions): JSX.Element {
   const names = useMemo(() => Object.keys(view.channels), [view]);
-  const state = useBoardState(plan, names, bench !== null);
+  const failed = [...new Set(limits.filter((one) => one.failed).map((one) => one.channel))];
+  const state = useBoardState(plan, names, failed, bench !== null);
   const channels = channelsOf(state.plots);
   const live = useLive(bench, channels);
   const marks = useMarks(live, view);
@@ -54,7 +57,6 @@ export function Board({ view, plan, bench }: BoardOptions): JSX.Element {
     work();
   };
   const change = (at: number, changed: (typeof state.plots)[number] | null) => state.setPlots(state.plots.flatMap((plot, number) => (number === at ? (changed ? [changed] : []) : [plot])));
-  const limits: LimitLine[] = view.limits;
   return (
     <div class="board" ref={board} onKeyDown={keyed}>
       <Toolbar state={state} range={source.range} live={bench !== null} following={follow} onRange={setRange} onCursor={addCursor} channels={names} />

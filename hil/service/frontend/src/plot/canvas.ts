@@ -1,11 +1,13 @@
 // What is drawn on plots beside their lines: limits, segments, events, cursors, a band of frequencies.
 
 import type uPlot from "uplot";
-import type { LimitLine, Mark } from "../api/types.ts";
+import type { Mark } from "../api/types.ts";
 import { colour } from "../theme.ts";
+import type { LimitMark } from "./limit-lines.ts";
 
 export const NAMES_OF_CURSORS = "ABCDEF";
 const DASH = [6, 4];
+const NAME_PX = 15; // of a line of text
 
 function inside(plot: uPlot, draw: (pen: CanvasRenderingContext2D, box: uPlot.BBox) => void): void {
   const { ctx: pen, bbox: box } = plot;
@@ -24,22 +26,43 @@ function upright(pen: CanvasRenderingContext2D, box: uPlot.BBox, x: number): voi
   pen.stroke();
 }
 
-export function drawLimits(plot: uPlot, scale: string, lines: readonly Pick<LimitLine, "above" | "below">[]): void {
+// Lines with their names, each where it holds; a name that would lie over another stands at the other end.
+export function drawLimits(plot: uPlot, scale: string, lines: readonly LimitMark[]): void {
+  const one = devicePixelRatio, taken: number[] = [];
   inside(plot, (pen, box) => {
-    pen.strokeStyle = colour("series-limit");
-    pen.setLineDash(DASH.map((one) => one * devicePixelRatio));
-    pen.lineWidth = 1.4 * devicePixelRatio;
-    for (const line of lines) {
-      for (const value of [line.above, line.below]) {
-        if (value === null || value === undefined) continue;
-        const y = plot.valToPos(value, scale, true);
-        pen.beginPath();
-        pen.moveTo(box.left, y);
-        pen.lineTo(box.left + box.width, y);
-        pen.stroke();
-      }
+    pen.setLineDash(DASH.map((length) => length * one));
+    pen.lineWidth = 1.4 * one;
+    pen.font = `${11 * one}px sans-serif`;
+    for (const { value, label, failed, holds } of lines) {
+      const y = plot.valToPos(value, scale, true);
+      const from = holds ? Math.max(box.left, plot.valToPos(holds.from, "x", true)) : box.left;
+      const to = holds && Number.isFinite(holds.to) ? Math.min(box.left + box.width, plot.valToPos(holds.to, "x", true)) : box.left + box.width;
+      if (to < from) continue;
+      pen.strokeStyle = pen.fillStyle = colour(failed ? "fail" : "series-limit");
+      pen.beginPath();
+      pen.moveTo(from, y);
+      pen.lineTo(to, y);
+      pen.stroke();
+      if (!label || y < box.top || y > box.top + box.height) continue;
+      const high = y - box.top > NAME_PX * one, left = taken.some((other) => Math.abs(other - y) < NAME_PX * one);
+      taken.push(y);
+      nameAt(pen, label, left ? box.left + 3 * one : Math.max(box.left, box.left + box.width - 3 * one - pen.measureText(label).width), y + (high ? 2 - NAME_PX : 2) * one);
     }
   });
+}
+
+// With an edge in the page's colour, so that it is read where it lies over a curve.
+function nameAt(pen: CanvasRenderingContext2D, name: string, x: number, top: number): void {
+  pen.save();
+  pen.textAlign = "left";
+  pen.textBaseline = "top";
+  pen.setLineDash([]);
+  pen.lineJoin = "round";
+  pen.lineWidth = 3 * devicePixelRatio;
+  pen.strokeStyle = colour("page");
+  pen.strokeText(name, x, top);
+  pen.fillText(name, x, top);
+  pen.restore();
 }
 
 // Segments as a bar at the top with their names, steps and events as lines, holds shaded.

@@ -36,6 +36,10 @@ export function roomy(low: number | null, high: number | null): [number, number]
   return [low - 0.06 * room, high + 0.1 * room];
 }
 
+// With values that must be in sight, too.
+export const reaching = (low: number | null, high: number | null, values: readonly number[]): [number | null, number | null] =>
+  low === null || high === null ? [low, high] : [Math.min(low, ...values), Math.max(high, ...values)];
+
 // Draws when an element is in sight, and what was left out meanwhile once it comes into sight.
 export function inSight(element: HTMLElement, draw: () => void): { ask: () => void; stop: () => void } {
   let seen = true, left = false;

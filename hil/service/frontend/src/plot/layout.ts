@@ -32,8 +32,14 @@ const USUAL: PlotSpec[] = [
   { kind: "spectrum", channels: ["motor_speed_rad_s"] },
 ];
 
-// What is shown until somebody chooses: the usual channels as far as the run has them, else its first ones.
-export function usualLayout(channels: readonly string[]): PlotSpec[] {
+// What is shown until somebody chooses: the usual channels as far as the run has them, else its first ones; and those
+// of which it failed a limit, each on a plot of its own.
+export function usualLayout(channels: readonly string[], failed: readonly string[] = []): PlotSpec[] {
+  const usual = usualOf(channels), shown = channelsOf(usual);
+  return [...usual, ...failed.filter((one) => channels.includes(one) && !shown.includes(one)).map((one) => ({ kind: "time" as const, channels: [one] }))].slice(0, MOST_PLOTS);
+}
+
+function usualOf(channels: readonly string[]): PlotSpec[] {
   const known = USUAL.map(({ kind, channels: some }) => ({ kind, channels: some.filter((one) => channels.includes(one)) })).filter((one) => one.channels.length);
   return known.length ? known : channels.slice(0, 3).map((channel) => ({ kind: "time", channels: [channel] }));
 }

@@ -2,12 +2,13 @@
 
 import type { JSX } from "preact";
 import { useState } from "preact/hooks";
-import type { LimitLine, Mark, RunView } from "../api/types.ts";
+import type { Mark, RunView } from "../api/types.ts";
 import { reading, wordsOf } from "../format.ts";
 import { t } from "../i18n/text.ts";
 import { useStore, type Store } from "../store.ts";
 import { roleOf } from "./frame.ts";
 import type { PlotSpec } from "./layout.ts";
+import { marksOf, type ChannelLimit } from "./limit-lines.ts";
 import type { Range } from "./range.ts";
 import type { Source } from "./source.ts";
 import { SpectrumPlot } from "./spectrum-plot.tsx";
@@ -23,7 +24,7 @@ interface Options {
   number: number;
   view: RunView;
   marks: Mark[];
-  limits: LimitLine[];
+  limits: ChannelLimit[];
   source: Source;
   following: boolean;
   hover: Store<number | null>;
@@ -46,6 +47,7 @@ export function PlotCard(options: Options): JSX.Element {
   const others = Object.keys(view.channels).filter((channel) => !plot.channels.includes(channel));
   const what = [KINDS[plot.kind], plot.channels.map(wordsOf).join(", ") || t("no channel")].filter(Boolean).join(": ");
   const label = t("Plot {number}: {what}", { number, what });
+  const failed = plot.kind === "time" ? plot.channels.flatMap((channel) => marksOf(options.limits.filter((one) => one.failed), [channel], view.channels[channel] ?? "")).map((one) => one.label) : [];
   const drop = (event: DragEvent) => {
     const channel = event.dataTransfer?.getData(DRAGGED);
     setOver(false);
@@ -67,7 +69,7 @@ export function PlotCard(options: Options): JSX.Element {
           <button type="button" class="plain" aria-label={t("Remove plot {number}", { number })} title={t("Remove this plot")} onClick={options.onRemove}>✕</button>
         </span>
       </figcaption>
-      <div class="plot-place" tabIndex={0} role="img" aria-label={label}>
+      <div class="plot-place" tabIndex={0} role="img" aria-label={[label, ...failed].join("; ")}>
         {plot.kind === "time" ? <TimePlot channels={plot.channels} units={view.channels} traces={source.traces} range={source.range} marks={options.marks} limits={options.limits} cursors={options.cursors} chosen={options.chosen} onRange={options.onRange} onCursor={options.onCursor} onHover={options.onHover} /> : null}
         {plot.kind === "spectrum" && plot.channels[0] && settled ? <SpectrumPlot run={view.run} channel={plot.channels[0]} unit={view.channels[plot.channels[0]] ?? ""} range={settled} /> : null}
         {plot.kind === "xy" && settled ? <XyPlot run={view.run} channels={plot.channels} units={view.channels} range={settled} /> : null}

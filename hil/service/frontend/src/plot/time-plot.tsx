@@ -3,11 +3,12 @@
 import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import uPlot from "uplot";
-import type { LimitLine, Mark } from "../api/types.ts";
+import type { Mark } from "../api/types.ts";
 import type { Store } from "../store.ts";
 import { colour, coloured } from "../theme.ts";
 import { drawCursors, drawLimits, drawMarks } from "./canvas.ts";
-import { axis, HEIGHT, inSight, onWidth, roleOf, roomy } from "./frame.ts";
+import { axis, HEIGHT, inSight, onWidth, reaching, roleOf, roomy } from "./frame.ts";
+import { failedIn, marksOf, type ChannelLimit } from "./limit-lines.ts";
 import { panned, zoomed, type Range } from "./range.ts";
 import { thinned, type Traces } from "./traces.ts";
 
@@ -17,7 +18,7 @@ export interface TimePlotOptions {
   traces: Store<Traces>;
   range: Store<Range>;
   marks: Mark[];
-  limits: LimitLine[];
+  limits: ChannelLimit[];
   cursors: number[];
   chosen: number;
   onRange: (range: Range) => void;
@@ -70,7 +71,7 @@ function make(element: HTMLElement, now: Now): uPlot {
     legend: { show: false },
     scales: {
       x: { time: false, range: () => [now.current.range.value.from, now.current.range.value.to] },
-      ...Object.fromEntries(scales.map((unit) => [unit || "none", { range: (_: uPlot, low: number | null, high: number | null) => roomy(low, high) }])),
+      ...Object.fromEntries(scales.map((unit) => [unit || "none", { range: (_: uPlot, low: number | null, high: number | null) => rangeOf(now.current, unit, low, high) }])),
     },
     axes: [axis({ space: 70, size: 28 }), ...scales.slice(0, 2).map((unit, at) => axis({ scale: unit || "none", unit, size: 56, side: at ? 1 : 3, grid: { show: at === 0, stroke: () => colour("grid"), width: 1 } }))],
     series: [{}, ...channels.flatMap((channel, at) => [seriesOf(units[channel] ?? "", at), seriesOf(units[channel] ?? "", at)])],
@@ -87,6 +88,13 @@ function make(element: HTMLElement, now: Now): uPlot {
 }
 
 const seriesOf = (unit: string, at: number): uPlot.Series => ({ scale: unit || "none", stroke: () => colour(`series-${roleOf(at)}`), width: 1.3, points: { size: 4 } });
+
+const onScale = ({ channels, units }: TimePlotOptions, unit: string): string[] => channels.filter((channel) => (units[channel] ?? "") === unit);
+
+function rangeOf(options: TimePlotOptions, unit: string, low: number | null, high: number | null): [number, number] {
+  const failed = low === null || high === null ? [] : failedIn(options.limits, onScale(options, unit), options.range.value, low, high);
+  return roomy(...reaching(low, high, failed));
+}
 
 const PLACES = 1.3; // for each pixel of what is shown, as more than that was asked for
 
@@ -109,7 +117,7 @@ function aligned(channels: string[], traces: Traces): uPlot.AlignedData {
 }
 
 function decorate(plot: uPlot, options: TimePlotOptions): void {
-  for (const channel of options.channels) drawLimits(plot, options.units[channel] || "none", options.limits.filter((line) => line.channel === channel));
+  for (const unit of new Set(options.channels.map((channel) => options.units[channel] ?? ""))) drawLimits(plot, unit || "none", marksOf(options.limits, onScale(options, unit), unit));
   drawCursors(plot, options.cursors, options.chosen);
 }
 

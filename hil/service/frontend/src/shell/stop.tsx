@@ -6,6 +6,7 @@ import { Refused, STOP_MS, stopNow } from "../api/client.ts";
 import { clockTime } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { t } from "../i18n/text.ts";
+import { dismiss } from "../question.ts";
 import { Store, useStore } from "../store.ts";
 
 // The bench that the view is about; '' for all. It changes with the address only, never because a run ends.
@@ -35,6 +36,7 @@ const untakenStop = new Store<Untaken | null>(null);
 let pressed = 0; // an earlier stop that ends late says nothing of the newest
 
 export async function pressStop(bench: string): Promise<boolean> {
+  dismiss(); // what was asked before a stop is asked anew after it
   const mine = ++pressed, untilMs = Date.now() + STOP_MS;
   const put = (untaken: Untaken | null) => { if (mine === pressed) untakenStop.value = untaken; };
   const late = setTimeout(() => put({ state: "tried", untilMs, refused: null }), LATE_MS);

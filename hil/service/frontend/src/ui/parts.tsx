@@ -2,7 +2,7 @@
 
 import type { ComponentChildren, JSX } from "preact";
 import { useState } from "preact/hooks";
-import { moment } from "../format.ts";
+import { exactMoment, moment } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { placeOf, titleOf } from "../addresses.ts";
 import type { Asked } from "../data.ts";
@@ -16,9 +16,9 @@ export function Badge({ kind }: { kind: string }): JSX.Element {
   return <span class={`verdict ${kind}`}>{kindInWords(kind)}</span>;
 }
 
-// A moment in the reader's language; as ISO 8601 where the pointer stays on it.
-export function Moment({ at }: { at: string | null | undefined }): JSX.Element {
-  return at ? <time dateTime={at} title={at}>{moment(at)}</time> : <span>–</span>;
+// A moment in the reader's language, `exact` to the second; as ISO 8601 where the pointer stays on it.
+export function Moment({ at, exact = false }: { at: string | null | undefined; exact?: boolean }): JSX.Element {
+  return at ? <time dateTime={at} title={at}>{exact ? exactMoment(at) : moment(at)}</time> : <span>–</span>;
 }
 
 export function Heading({ kind, children }: { kind?: ComponentChildren; children: ComponentChildren }): JSX.Element {

@@ -34,7 +34,7 @@ export function Audit(): JSX.Element {
           <>
             <Scroll label={t("Audit log")}><table>
               <thead><tr><th scope="col" class="number">{t("entry")}</th><th scope="col">{t("when")}</th><th scope="col">{t("who")}</th><th scope="col">{t("role")}</th><th scope="col">{t("action")}</th><th scope="col">{t("target")}</th><th scope="col">{t("detail")}</th></tr></thead>
-              <tbody>{all.map((one) => <tr key={one.id}><td class="number">{one.id}</td><td><Moment at={one.at} /></td><td>{one.who}</td><td>{kindInWords(one.role)}</td><th scope="row">{actionInWords(one.action)}</th><td>{one.target}</td><td>{detailOf(one.detail)}</td></tr>)}</tbody>
+              <tbody>{all.map((one) => <tr key={one.id}><td class="number">{one.id}</td><td><Moment at={one.at} exact /></td><td>{one.who}</td><td>{kindInWords(one.role)}</td><th scope="row">{actionInWords(one.action)}</th><td>{one.target}</td><td>{detailOf(one.detail)}</td></tr>)}</tbody>
             </table></Scroll>
             <div class="row">
               {before ? <button type="button" onClick={() => setQuery(new URLSearchParams(), true)}>{t("Newest")}</button> : null}

@@ -9,11 +9,12 @@ import { attempt, useData } from "../data.ts";
 import { English } from "../i18n/english.tsx";
 import { t, tx } from "../i18n/text.ts";
 import { useLost, type BenchState } from "../live.ts";
+import { agreed } from "../question.ts";
 import { useMay, useMe } from "../session.ts";
 import { linkTo } from "../ui/parts.tsx";
 import { LimitedField } from "../ui/too-long.tsx";
 import { LONGEST_ANSWER, PromptCard } from "./panel-prompt.tsx";
-import { aboutBench, headlineOf, isCause, isEnding, isHeld, isReserved, messageOf, nextIn, nextOf, titleOf } from "./bench-words.ts";
+import { aboutBench, headlineOf, isCause, isEnding, isHeld, isReserved, messageOf, nextIn, nextOf, stoppingText, titleOf } from "./bench-words.ts";
 import { Reset } from "./reset.tsx";
 
 export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 }): JSX.Element {
@@ -26,6 +27,7 @@ export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 
       {running ? <p>{tx("<a>Run {run}</a>, by {person}: {doing}", { a: linkTo(to.run(running.id)), run: running.id, person: running.requested_by, doing: <English>{running.doing}</English> })}</p> : null}
       {held && !running?.prompt ? <p>{nextOf(state)}</p> : null}
       {bench.why && !(running && bench.state === "running") ? <p><English>{bench.why}</English></p> : null}
+      {bench.state === "emergency_stop" ? <p>{nextOf(state)}</p> : null}
       {running ? <progress max={1} value={running.share ?? 0} aria-label={t("Progress of the run")} /> : null}
       {running?.prompt ? <PromptCard prompt={running.prompt} run={running.id} reached={!bench.away_since} /> : message && !isCause(message, running) ? <p class="message" role="status"><English>{message}</English></p> : null}
       <Actions state={state} answers={!running?.prompt} />
@@ -46,8 +48,9 @@ export function Actions({ state, answers = true }: { state: BenchState; answers?
     void attempt(() => post(`/runs/${run}/abort`).then(() => true)).then((taken) => { if (!taken) setEnded(null); });
   };
   const order = (what: string) => () => void attempt(() => post(`/runs/${running?.id}/${what}`));
-  const release = () => {
-    if (confirm(t("Is {bench} no longer driven by its agent? It can then be driven by another agent. A run of this agent is marked as interrupted.", { bench: bench.name }))) void attempt(() => ask("DELETE", `/benches/${name}/agent`));
+  const release = async () => {
+    const words = t("Is {bench} no longer driven by its agent? It can then be driven by another agent. A run of this agent is marked as interrupted.", { bench: bench.name });
+    if (await agreed(words, t("Release from its agent"), t("Cancel"))) void attempt(() => ask("DELETE", `/benches/${name}/agent`));
   };
   const mayReset = bench.state === "emergency_stop" && !running && may("engineer");
   const mayRelease = bench.lease === me.name || may("engineer");
@@ -59,7 +62,7 @@ export function Actions({ state, answers = true }: { state: BenchState; answers?
         {running && may("operator") && reached && held && !stopped ? <button type="button" class="main" disabled={ending} onClick={order("resume")}>{t("Resume")}</button> : null}
         {running && may("operator") && !stopped ? <button type="button" disabled={ending} onClick={() => end(running.id)}>{ending ? t("Being ended") : t("End the run")}</button> : null}
         {mayReset ? <Reset bench={bench} next={nextIn(queue)} /> : null}
-        {bench.away_since && may("engineer") ? <button type="button" onClick={release}>{t("Release from its agent")}</button> : null}
+        {bench.away_since && may("engineer") ? <button type="button" onClick={() => void release()}>{t("Release from its agent")}</button> : null}
         {!bench.lease && may("operator") && (!bench.reserved_by || bench.reserved_by === me.name) ? <button type="button" onClick={() => void attempt(() => ask("PUT", `/benches/${name}/lease`, { for_s: 3600 }))}>{t("Reserve for an hour")}</button> : null}
         {bench.lease && may("operator") && mayRelease ? <button type="button" onClick={() => void attempt(() => ask("DELETE", `/benches/${name}/lease`))}>{t("End the reservation")}</button> : null}
       </div>
@@ -81,7 +84,7 @@ export function ResetOf({ bench }: { bench: Bench }): JSX.Element | null {
 // What there is to do about a stop: whoever may resets it once its run has ended.
 export function AfterStop({ bench }: { bench: Bench }): JSX.Element {
   const may = useMay(), queue = useData<Run[]>(`/benches/${encodeURIComponent(bench.name)}/queue`).data ?? [];
-  if (bench.running) return <p>{t("The run is being ended.")}</p>;
+  if (bench.running) return <p>{stoppingText()}</p>;
   return may("engineer") ? <div class="row"><Reset bench={bench} next={nextIn(queue)} /></div> : <p>{t("When it is safe, an engineer resets the emergency stop.")}</p>;
 }
 

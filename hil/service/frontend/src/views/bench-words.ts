@@ -71,7 +71,7 @@ const KEYS = ["r and Enter: resume; q and Enter: end the run", "resumes by itsel
 // What happens next, by itself or because somebody does something.
 export function nextOf({ bench, running, queue }: BenchState): string {
   const first = nextIn(queue), more = queue.length - 1;
-  if (bench.state === "emergency_stop") return running ? t("The run is being ended.") : t("When it is safe, an engineer resets the emergency stop.");
+  if (bench.state === "emergency_stop") return running ? stoppingText() : t("When it is safe, an engineer resets the emergency stop.");
   if (isEnding(running)) return t("The run is being ended.");
   if (running?.prompt) return t("The run goes on when the question is answered.");
   if (running && isHeld(running)) return t("The run is paused and the torque is off. It goes on when the cause is gone, or with Resume.");
@@ -100,6 +100,21 @@ export function leftOf(bench: Bench, run: Run | null, nowMs: number): number | n
 export function resetText(next: Run | null | undefined): string {
   return next ? t("It is safe: reset the emergency stop. Run {run} starts then.", { run: next.id }) : t("It is safe: reset the emergency stop");
 }
+
+const FRESH_MS = 5000; // a look at the speed says something of now
+
+const isFresh = (bench: Bench, nowMs: number): boolean => bench.last_speed != null && nowMs - Date.parse(bench.last_speed.at) <= FRESH_MS;
+
+// Whether the service has just seen that the motor stands.
+export const isFreshStandstill = (bench: Bench, nowMs: number): boolean => isFresh(bench, nowMs) && bench.last_speed?.turns === false;
+
+// Whether a person was shown a look that is old by now, while there is a newer one.
+export const isNewerLook = (shown: Bench, now: Bench, nowMs: number): boolean =>
+  now.last_speed != null && !isFresh(shown, nowMs) && now.last_speed.at !== shown.last_speed?.at;
+
+// What happens from a stop to the end of its run: until then nobody can reset it, and somebody must afterwards.
+export const stoppingText = (): string =>
+  t("Stopping: the bench goes to its safe state, and what was measured is written down. When the run has ended, an engineer can reset the emergency stop.");
 
 // The speed that was measured last before or after a stop, beside what resets it.
 export function lastSpeedText(bench: Bench, nowMs: number): string {

@@ -1,7 +1,7 @@
 // One bench: what it does, its run as it goes on, its queue, the form that starts a plan, what came last.
 
 import type { JSX } from "preact";
-import { useEffect } from "preact/hooks";
+import { useEffect, useMemo } from "preact/hooks";
 import type { FoundRuns, Run, RunView } from "../api/types.ts";
 import { to } from "../addresses.ts";
 import { useData } from "../data.ts";
@@ -15,6 +15,7 @@ import { Badge, linkTo, Moment, Scroll, Section, verdictOf } from "../ui/parts.t
 import { Banner } from "./bench-banner.tsx";
 import { Criteria } from "./criteria.tsx";
 import { Queue } from "./queue.tsx";
+import { limitsOf } from "./runs/failed-limits.ts";
 import { valuesOf } from "./runs/run-values.ts";
 import { StartPlan } from "./plans/start-plan.tsx";
 import { Handovers } from "./team/handovers.tsx";
@@ -53,8 +54,9 @@ export function BenchView({ bench }: { bench: string }): JSX.Element {
 
 function Running({ run }: { run: Run }): JSX.Element | null {
   const view = useData<RunView>(`/runs/${run.id}/view`, AGAIN_MS);
+  const limits = useMemo(() => (view.data ? limitsOf(view.data) : []), [view.data]);
   if (!view.data?.live) return <p class="quiet">{t("Nothing has been measured yet.")}</p>;
-  return <Section title={tx("Live <a>run {run}</a>", { a: linkTo(to.run(run.id)), run: run.id })} label="plots"><Board view={view.data} plan={run.plan} bench={run.bench} /></Section>;
+  return <Section title={tx("Live <a>run {run}</a>", { a: linkTo(to.run(run.id)), run: run.id })} label="plots"><Board view={view.data} limits={limits} plan={run.plan} bench={run.bench} /></Section>;
 }
 
 function LiveCriteria({ run, live }: { run: number; live: ReturnType<typeof useLive> }): JSX.Element {

@@ -9,6 +9,7 @@ import { t, tn, tx } from "../i18n/text.ts";
 import { Heading, linkTo, Loaded } from "../ui/parts.tsx";
 import { AfterStop } from "./bench-banner.tsx";
 import { aboutBench, lookOf, wordOf } from "./bench-words.ts";
+import { EndedBadly } from "./ended-badly.tsx";
 
 const AGAIN_MS = 2000;
 
@@ -23,6 +24,7 @@ export function Benches(): JSX.Element {
           ? <ul class="cards">{all.map((bench) => <Card key={bench.name} bench={bench} />)}</ul>
           : <p>{tx("No bench yet. Agents bring them: {command}", { command: <code>hil bench agent --server URL</code> })}</p>}
       </Loaded>
+      <EndedBadly />
       <p class="links"><a href={to.list("bench-files")}>{t("Bench files")}</a></p>
     </>
   );

@@ -14,19 +14,19 @@ type Judged = Pick<RunView["criteria"][number], "id" | "upper" | "lower" | "verd
 const OF_SHAFT_TORQUE = ["peak_shaft_torque"];
 const OF_ANY = /^(?<segment>.+)\.(?<metric>peak|trough|magnitude)\.(?<channel>\w+)$/;
 
-function channelOf({ id }: Judged, segment: string): { channel: string; bothSides: boolean } | null {
-  const named = namedBy(id), own = OF_ANY.exec(id)?.groups;
-  if (own) return own["segment"] === segment ? { channel: own["channel"] ?? "", bothSides: own["metric"] === "magnitude" } : null;
-  return named.segment === segment && OF_SHAFT_TORQUE.includes(named.metric) ? { channel: "shaft_torque_nm", bothSides: false } : null;
+// Segment, channel and values that a criterion limits; null where it limits no value of a channel.
+export function limitedBy({ id, upper, lower }: Pick<Judged, "id" | "upper" | "lower">): { segment: string; channel: string; values: number[] } | null {
+  const named = namedBy(id), own = OF_ANY.exec(id)?.groups, values = [upper, lower].filter((limit): limit is number => limit != null);
+  if (own) return { segment: own["segment"] ?? "", channel: own["channel"] ?? "", values: own["metric"] === "magnitude" ? values.flatMap((limit) => [limit, -limit]) : values };
+  return OF_SHAFT_TORQUE.includes(named.metric) ? { segment: named.segment, channel: "shaft_torque_nm", values } : null;
 }
 
 export function levelsOf(views: readonly { criteria: readonly Judged[] }[], segment: string, channel: string): Level[] {
   const found = new Map<number, boolean>();
   for (const one of views.flatMap(({ criteria }) => criteria)) {
-    const of = channelOf(one, segment);
-    if (of?.channel !== channel) continue;
-    const limits = [one.upper, one.lower].filter((limit): limit is number => limit != null);
-    for (const value of of.bothSides ? limits.flatMap((limit) => [limit, -limit]) : limits) found.set(value, (found.get(value) ?? false) || one.verdict === "fail");
+    const of = limitedBy(one);
+    if (of?.channel !== channel || of.segment !== segment) continue;
+    for (const value of of.values) found.set(value, (found.get(value) ?? false) || one.verdict === "fail");
   }
   return [...found].map(([value, failed]) => ({ value, failed })).sort((one, other) => one.value - other.value);
 }

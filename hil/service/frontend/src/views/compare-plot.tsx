@@ -8,7 +8,7 @@ import type { RecordingCurves, RunTraces, RunView } from "../api/types.ts";
 import { figure, wordsOf } from "../format.ts";
 import { t } from "../i18n/text.ts";
 import { drawLimits } from "../plot/canvas.ts";
-import { axis, HEIGHT, onWidth, roleOf, roomy } from "../plot/frame.ts";
+import { axis, HEIGHT, onWidth, reaching, roleOf, roomy } from "../plot/frame.ts";
 import { tracesOf } from "../plot/traces.ts";
 import { colour, coloured } from "../theme.ts";
 import type { Level } from "./compare-levels.ts";
@@ -87,10 +87,6 @@ async function ofRecording(recording: number, step: number, from: number, to: nu
   }
 }
 
-// A limit that a run fails is in sight.
-const within = (low: number | null, high: number | null, failed: number[]): [number | null, number | null] =>
-  low === null || high === null ? [low, high] : [Math.min(low, ...failed), Math.max(high, ...failed)];
-
 const EMPTY: Laid = { time: [], lowest: [], highest: [] };
 
 // The first run is drawn wider, so that one that lies exactly over it shows at its edges.
@@ -99,11 +95,11 @@ function make(element: HTMLElement, count: number, unit: string, levels: Level[]
   const series = (at: number): uPlot.Series => ({ stroke: () => colour(`series-${roleOf(at)}`), width: at ? 1.2 : 3, points: { show: false }, spanGaps: true });
   return new uPlot({
     width: Math.max(200, element.clientWidth), height: HEIGHT, legend: { show: false },
-    scales: { x: { time: false }, y: { range: (_, low, high) => roomy(...within(low, high, failed)) } },
+    scales: { x: { time: false }, y: { range: (_, low, high) => roomy(...reaching(low, high, failed)) } },
     axes: [axis({ space: 60, size: 28 }), axis({ size: 56, unit })],
     series: [{}, ...Array.from({ length: count }, (_, at) => [series(at), series(at)]).flat()],
     bands: Array.from({ length: count }, (_, at) => ({ series: [2 * at + 1, 2 * at + 2] as [number, number], fill: () => colour(`series-${roleOf(at)}`) })),
-    hooks: { draw: [(plot) => drawLimits(plot, "y", levels.map(({ value }) => ({ above: value })))] },
+    hooks: { draw: [(plot) => drawLimits(plot, "y", levels.map(({ value }) => ({ value, label: "", failed: false, holds: null })))] },
     cursor: { sync: { key: "compare" }, drag: { x: true, y: false }, points: { show: false } },
   }, [[], ...Array.from({ length: 2 * count }, () => [])] as unknown as uPlot.AlignedData, element);
 }

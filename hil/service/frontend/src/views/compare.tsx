@@ -25,7 +25,8 @@ const MOST = 6;
 
 export function Compare(): JSX.Element {
   const [query, setQuery] = useQuery();
-  const chosen = (query.get("runs") ?? "").split(",").map(Number).filter((one) => Number.isInteger(one) && one > 0), runs = chosen.slice(0, MOST);
+  const chosen = (query.get("runs") ?? "").split(",").map(Number).filter((one) => Number.isInteger(one) && one > 0), each = [...new Set(chosen)], runs = each.slice(0, MOST);
+  const twice = each.filter((run) => chosen.filter((one) => one === run).length > 1);
   const set = (changed: number[]) => {
     const next = new URLSearchParams(query);
     next.set("runs", changed.join(","));
@@ -41,7 +42,8 @@ export function Compare(): JSX.Element {
     <>
       <Heading>{t("Compare runs")}</Heading>
       <Choose runs={runs} onChange={set} />
-      {chosen.length > MOST ? <p class="bad" role="status">{t("{count} runs are chosen; the first {most} are compared.", { count: chosen.length, most: MOST })}</p> : null}
+      {twice.map((run) => <p key={run} class="bad" role="status">{t("Run {run} is named twice in the address. A run is not compared with itself: choose another one.", { run })}</p>)}
+      {each.length > MOST ? <p class="bad" role="status">{t("{count} runs are chosen; the first {most} are compared.", { count: each.length, most: MOST })}</p> : null}
       {runs.length ? <ChooseRecordings chosen={beside} runs={runs.length} onChange={setBeside} /> : null}
       {runs.length >= 2 || (runs.length && beside.length) ? <Compared key={runs.join()} runs={runs} beside={beside} query={query} setQuery={setQuery} /> : <p class="quiet">{tx("Choose two runs or more, of one plan or of its copies; in the <a>table of runs</a> they can be ticked.", { a: linkTo(to.list("runs")) })}</p>}
     </>

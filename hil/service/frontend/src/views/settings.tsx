@@ -9,6 +9,7 @@ import { duration } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { chooseLanguage, chosenLanguage, LANGUAGES, type Language } from "../i18n/language.ts";
 import { t, tx } from "../i18n/text.ts";
+import { agreed } from "../question.ts";
 import { useMay, useMe } from "../session.ts";
 import { NumberInput } from "../ui/number-field.tsx";
 import { useStore } from "../store.ts";
@@ -99,7 +100,7 @@ function Tokens(): JSX.Element {
     tokens.again();
   };
   const revoke = async (token: TokenData) => {
-    if (!confirm(t("Revoke the token of {name}?", { name: token.name }))) return;
+    if (!(await agreed(t("Revoke the token of {name}?", { name: token.name }), t("Revoke"), t("Cancel")))) return;
     await attempt(() => ask("DELETE", `/tokens/${token.id}`));
     tokens.again();
   };

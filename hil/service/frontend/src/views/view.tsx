@@ -16,6 +16,7 @@ import { Compare } from "./compare.tsx";
 import { Design } from "./design/design.tsx";
 import { BenchFiles, BenchFileView, Controllers, ControllerView, Models, ModelView } from "./given/given.tsx";
 import { Glossary } from "./glossary.tsx";
+import { NoneThere } from "./none-there.tsx";
 import { Panel } from "./panel.tsx";
 import { Plans, PlanView } from "./plans/plans.tsx";
 import { Recordings, RecordingView } from "./recordings/recordings.tsx";
@@ -79,8 +80,6 @@ function KnownBench({ bench, children }: { bench: string; children: ComponentChi
   const found = useData<Bench>(`/benches/${encodeURIComponent(bench)}`);
   const missing = isMissing(found);
   useStopOf(bench, missing ? false : found.loading && !found.data ? null : true);
-  if (missing) {
-    return <><Heading>{t("There is no bench '{bench}'", { bench })}</Heading><p>{t("The service has no bench of this name.")} <a href={to.list("benches")}>{t("Benches")}</a></p></>;
-  }
+  if (missing) return <NoneThere kind="bench" name={bench} />;
   return found.loading && !found.data ? <p class="quiet">{t("Asking the service …")}</p> : <>{children}</>;
 }

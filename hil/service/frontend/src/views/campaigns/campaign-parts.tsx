@@ -6,6 +6,7 @@ import type { Campaign } from "../../api/types.ts";
 import { attempt } from "../../data.ts";
 import { duration, fixed, percent, whole } from "../../format.ts";
 import { t } from "../../i18n/text.ts";
+import { agreed } from "../../question.ts";
 import { useMay } from "../../session.ts";
 import { inWords } from "../../ui/parts.tsx";
 
@@ -49,7 +50,7 @@ export function CampaignActions({ campaign, onRemoved }: { campaign: Campaign; o
   const may = useMay(), isOver = OVER.includes(campaign.state), path = `/campaigns/${campaign.id}`;
   if (!may("engineer") || campaign.place) return null;
   const remove = async () => {
-    if (!confirm(t("Remove campaign {number} with its files?", { number: campaign.id }))) return;
+    if (!(await agreed(t("Remove campaign {number} with its files?", { number: campaign.id }), t("Remove"), t("Cancel")))) return;
     if (await attempt(async () => { await ask("DELETE", path); return true; })) onRemoved();
   };
   const button = (text: string, work: () => void) => <button type="button" aria-label={t("{action}: campaign {number}", { action: text, number: campaign.id })} onClick={work}>{text}</button>;

@@ -6,7 +6,7 @@ import { ask, getText } from "../../api/client.ts";
 import type { FileCheck, Model } from "../../api/types.ts";
 import { attempt, useData } from "../../data.ts";
 import { Conflict, saved, theirsOf, type Theirs } from "../../editor/conflict.tsx";
-import { DraftNotice } from "../../editor/draft-notice.tsx";
+import { agreedToDiscard, DraftNotice } from "../../editor/draft-notice.tsx";
 import { TextEditor } from "../../editor/text-editor.tsx";
 import { useCheck } from "../../editor/use-check.ts";
 import { useDraft } from "../../editor/use-draft.ts";
@@ -49,8 +49,8 @@ export function FileEditor({ kind, text: given, item, basedOn = "" }: Options): 
     go(of.address(name));
   });
   const next = nextName(theirs?.name ?? "", taken), keepMine = () => void keep(inText === null ? text : named(text, next), next);
-  const take = () => {
-    if (theirs === null || !confirm(t("Discard what you typed? It cannot be brought back."))) return;
+  const take = async () => {
+    if (theirs === null || !(await agreedToDiscard())) return;
     draft.saved();
     go(of.address(theirs.name));
   };
@@ -58,7 +58,7 @@ export function FileEditor({ kind, text: given, item, basedOn = "" }: Options): 
   return (
     <>
       <DraftNotice of={draft} />
-      {theirs ? <Conflict theirs={theirs} mine={text} keep={{ name: t("Keep mine as {name}", { name: next }), do: keepMine }} take={take} /> : null}
+      {theirs ? <Conflict theirs={theirs} mine={text} keep={{ name: t("Keep mine as {name}", { name: next }), do: keepMine }} take={() => void take()} /> : null}
       <div class="columns">
         <div>
           {inText === null ? <NameField label={t("Name")} value={name} onChange={setName} /> : null}

@@ -51,7 +51,7 @@ export function GiveFile({ kind, submit, path, ending, onGiven }: Options): JSX.
       {theirs ? <Conflict theirs={theirs} mine={text} keep={{ name: t("Keep mine as the newer version"), do: () => void give(theirs.tag) }} take={() => seen(theirs)} /> : null}
       <div class="row">
         <label class="field">{t("File ({ending})", { ending })}<input type="file" accept={`${ending},text/plain`} onChange={(event) => void take(event.currentTarget)} /></label>
-        <LimitedField label={t("Name")} most={LONGEST_FILE_NAME} required pattern="[A-Za-z0-9][A-Za-z0-9_.\-]*" value={name} onText={(typed) => draft.set({ text, name: typed })} />
+        <LimitedField label={t("Name")} most={LONGEST_FILE_NAME} required pattern="[A-Za-z0-9][A-Za-z0-9_.\-]*" title={t("letters, digits, _ . and -")} value={name} onText={(typed) => draft.set({ text, name: typed })} />
         <button type="submit" class="main" disabled={!name || !text}>{submit}</button>
       </div>
       <label class="field">{t("Text")}<textarea rows={6} spellcheck={false} value={text} onInput={(event) => draft.set({ name, text: event.currentTarget.value })} /></label>

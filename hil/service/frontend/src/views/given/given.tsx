@@ -9,11 +9,13 @@ import { itemOf } from "../../editor/drafts.ts";
 import { Versions, versionPath } from "../../editor/versions.tsx";
 import { English } from "../../i18n/english.tsx";
 import { t } from "../../i18n/text.ts";
+import { agreed } from "../../question.ts";
 import { go } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { kindInWords } from "../../ui/kinds.ts";
 import { Heading, inWords, Loaded, Scroll, Section } from "../../ui/parts.tsx";
 import { UseController } from "../design/use-controller.tsx";
+import { NoneThere } from "../none-there.tsx";
 import { FileText } from "../plans/plans.tsx";
 import { EditFile, FileEditor, useWritten } from "./file-editor.tsx";
 import { GiveFile } from "./give-file.tsx";
@@ -88,10 +90,9 @@ export const ModelView = ({ name }: { name: string }): JSX.Element => <Given nam
 export function BenchFileView({ name }: { name: string }): JSX.Element {
   const may = useMay(), { isOn } = useWritten();
   return (
-    <>
-      <Given name={name} kind="bench" />
+    <Given name={name} kind="bench">
       {may("engineer") && !isOn ? <ServeBench name={name} /> : null}
-    </>
+    </Given>
   );
 }
 
@@ -114,21 +115,24 @@ function ServeBench({ name }: { name: string }): JSX.Element | null {
 export function ControllerView({ name }: { name: string }): JSX.Element {
   const may = useMay(), { isOn } = useWritten();
   return (
-    <>
-      <Given name={name} kind="controller" />
+    <Given name={name} kind="controller">
       {may("engineer") && !isOn ? <Section title={t("Use it in a plan")} label="use"><UseController controller={name} /></Section> : null}
-    </>
+    </Given>
   );
 }
 
-function Given({ name, kind }: { name: string; kind: GivenKind }): JSX.Element {
+// `children`: what else there is to do with one that there is.
+function Given({ name, kind, children }: { name: string; kind: GivenKind; children?: ComponentChildren }): JSX.Element {
   const may = useMay(), of = kindOf(kind), { isOn, version } = useWritten();
-  const found = useData<{ name: string; built_in: boolean }[]>(of.path).data?.find((one) => one.name === name);
+  const all = useData<{ name: string; built_in: boolean }[]>(of.path), found = all.data?.find((one) => one.name === name);
   const textPath = `${of.path}/${encodeURIComponent(name)}/text`, editPath = `${of.address(name)}?write=on`;
   const remove = async () => {
-    if (!confirm(t("Remove {name}? Its versions stay.", { name }))) return;
+    if (!(await agreed(t("Remove {name}? Its versions stay.", { name }), t("Remove"), t("Cancel")))) return;
     if (await attempt(async () => { await ask("DELETE", `${of.path}/${encodeURIComponent(name)}`); return true; })) go(to.list(of.list));
   };
+  // One that was removed is written on from its versions.
+  if (all.data && !found && !(isOn && version !== null)) return <NoneThere kind={kind === "bench" ? "bench-file" : kind} name={name}><Versions kind={kind} name={name} textPath={null} editPath={editPath} /></NoneThere>;
+  if (all.loading && !all.data) return <p class="quiet">{t("Asking the service …")}</p>;
   if (isOn && may("engineer")) return <><Heading kind={<a href={of.address(name)}>{name}</a>}>{of.edit}</Heading><EditFile key={itemOf(kind, name, version)} kind={kind} name={name} path={version === null ? textPath : versionPath(kind, name, version)} item={itemOf(kind, name, version)} /></>;
   const heading = {
     model: [t("Model"), t("Shipped model"), t("Given model")], controller: [t("Controller"), t("Shipped controller"), t("Given controller")], bench: [t("Bench file"), t("Shipped bench file"), t("Given bench file")],
@@ -141,6 +145,7 @@ function Given({ name, kind }: { name: string; kind: GivenKind }): JSX.Element {
       <FileText path={textPath} label={`${kindInWords(kind)} ${name}`} />
       <Versions kind={kind} name={name} textPath={textPath} editPath={editPath} />
       {found && !found.built_in && may("engineer") ? <div class="row"><button type="button" onClick={() => void remove()}>{removing}</button></div> : null}
+      {children}
     </>
   );
 }

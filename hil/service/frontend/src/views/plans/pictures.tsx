@@ -4,6 +4,7 @@ import type { JSX } from "preact";
 import { API, ask } from "../../api/client.ts";
 import { attempt, useData } from "../../data.ts";
 import { t } from "../../i18n/text.ts";
+import { agreed } from "../../question.ts";
 
 export function Pictures(): JSX.Element {
   const names = useData<string[]>("/pictures");
@@ -16,7 +17,7 @@ export function Pictures(): JSX.Element {
     names.again();
   };
   const remove = async (name: string) => {
-    if (!confirm(t("Remove the picture {name}?", { name }))) return;
+    if (!(await agreed(t("Remove the picture {name}?", { name }), t("Remove"), t("Cancel")))) return;
     await attempt(() => ask("DELETE", pathOf(name)));
     names.again();
   };

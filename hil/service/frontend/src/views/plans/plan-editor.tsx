@@ -7,7 +7,7 @@ import type { PlanCheck } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
 import { attempt } from "../../data.ts";
 import { Conflict, saved, theirsOf, type Theirs } from "../../editor/conflict.tsx";
-import { DraftNotice } from "../../editor/draft-notice.tsx";
+import { agreedToDiscard, DraftNotice } from "../../editor/draft-notice.tsx";
 import { TextEditor } from "../../editor/text-editor.tsx";
 import { useCheck } from "../../editor/use-check.ts";
 import { useDraft } from "../../editor/use-draft.ts";
@@ -46,8 +46,8 @@ export function PlanEditor({ text: given, tag: givenTag, item, builtIn, basedOn 
     onSaved?.();
     go(to.plan(name));
   });
-  const take = () => {
-    if (theirs === null || !confirm(t("Discard what you typed? It cannot be brought back."))) return;
+  const take = async () => {
+    if (theirs === null || !(await agreedToDiscard())) return;
     draft.saved();
     if (theirs.name === basedOn && onTaken) onTaken(theirs);
     else go(to.plan(theirs.name));
@@ -56,7 +56,7 @@ export function PlanEditor({ text: given, tag: givenTag, item, builtIn, basedOn 
   return (
     <>
       <DraftNotice of={draft} changed={tag !== givenTag} />
-      {theirs ? <Conflict theirs={theirs} mine={text} keep={{ name: t("Keep mine as the newer version"), do: () => void keep(theirs.tag) }} take={take} /> : null}
+      {theirs ? <Conflict theirs={theirs} mine={text} keep={{ name: t("Keep mine as the newer version"), do: () => void keep(theirs.tag) }} take={() => void take()} /> : null}
       <div class="columns even">
         <TextEditor label={t("Text of the plan")} kind="yaml" schema="plan" text={text} onText={setText} checked={checked} keep={action}>
           {builtIn ? <p class="quiet">{t("A built-in plan stays as it is: this becomes a plan of its own.")}</p> : null}

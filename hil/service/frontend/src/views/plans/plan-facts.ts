@@ -14,5 +14,6 @@ const TORQUES: Record<string, (value: string) => string> = {
   motor_torque: (value) => t("{value} at the motor", { value }),
 };
 
-export const torquesOf = (plan: Plan): string =>
-  Object.entries(plan.largest_requests_nm ?? {}).map(([quantity, value]) => TORQUES[quantity]?.(figure(value, "N m")) ?? figure(value, "N m")).join(", ") || "–";
+// Of a plan with its own values, or of a forecast with those that were chosen; '' where none is known.
+export const torquesOf = (of: Pick<Plan, "largest_requests_nm"> | null): string =>
+  Object.entries(of?.largest_requests_nm ?? {}).map(([quantity, value]) => TORQUES[quantity]?.(figure(value, "N m")) ?? figure(value, "N m")).join(", ");

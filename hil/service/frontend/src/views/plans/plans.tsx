@@ -5,11 +5,12 @@ import { useEffect, useState } from "preact/hooks";
 import { ask, getText } from "../../api/client.ts";
 import type { Plan } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
-import { attempt, useData } from "../../data.ts";
+import { attempt, isMissing, useData } from "../../data.ts";
 import { itemOf } from "../../editor/drafts.ts";
 import { Versions, versionPath } from "../../editor/versions.tsx";
 import { limitText } from "../../format.ts";
 import { t } from "../../i18n/text.ts";
+import { agreed } from "../../question.ts";
 import { go, useQuery } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { Heading, Loaded, Scroll, Section } from "../../ui/parts.tsx";
@@ -20,6 +21,7 @@ import { renamed, START } from "./plan-text.ts";
 import { valuesFrom } from "./start-values.ts";
 import { StartPlan } from "./start-plan.tsx";
 import { GiveFile } from "../given/give-file.tsx";
+import { NoneThere } from "../none-there.tsx";
 import { Pictures } from "./pictures.tsx";
 
 export function Plans(): JSX.Element {
@@ -37,7 +39,7 @@ export function Plans(): JSX.Element {
               <tbody>
                 {all.map((plan) => (
                   <tr key={plan.name}><th scope="row"><a href={to.plan(plan.name)}>{plan.name}</a></th>
-                    <td>{plan.title}{plan.hazard ? <span class="bad"> {t("hazardous: {hazard}", { hazard: plan.hazard })}</span> : null}</td><td>{plan.built_in ? t("built in") : t("given")}</td><td class="number">{durationOf(plan)}</td><td>{torquesOf(plan)}</td><td class="number">{Object.keys(plan.variables).length}</td>
+                    <td>{plan.title}{plan.hazard ? <span class="bad"> {t("hazardous: {hazard}", { hazard: plan.hazard })}</span> : null}</td><td>{plan.built_in ? t("built in") : t("given")}</td><td class="number">{durationOf(plan)}</td><td>{torquesOf(plan) || "–"}</td><td class="number">{Object.keys(plan.variables).length}</td>
                   </tr>
                 ))}
               </tbody>
@@ -53,14 +55,15 @@ export function Plans(): JSX.Element {
 }
 
 export function PlanView({ name }: { name: string }): JSX.Element {
-  const plan = useData<Plan>(`/plans/${encodeURIComponent(name)}`);
+  const path = `/plans/${encodeURIComponent(name)}`, plan = useData<Plan>(path);
+  if (isMissing(plan)) return <NoneThere kind="plan" name={name} />;
   return <Loaded whole of={plan} what={t("plan {name}", { name })}>{(found) => <Found plan={found} onSaved={plan.again} />}</Loaded>;
 }
 
 function Found({ plan, onSaved }: { plan: Plan; onSaved: () => void }): JSX.Element {
   const may = useMay(), [query] = useQuery(), textPath = `/plans/${encodeURIComponent(plan.name)}/text`, version = Number(query.get("version")) || null;
   const remove = async () => {
-    if (!confirm(t("Remove the plan {name}? Its runs stay.", { name: plan.name }))) return;
+    if (!(await agreed(t("Remove the plan {name}? Its runs stay.", { name: plan.name }), t("Remove"), t("Cancel")))) return;
     if (await attempt(async () => { await ask("DELETE", `/plans/${encodeURIComponent(plan.name)}`); return true; })) go(to.list("plans"));
   };
   const variables = Object.entries(plan.variables);

@@ -37,6 +37,7 @@ export function StartPlan({ bench, plan, from }: { bench?: string; plan?: string
   const where = chosenBench || benches[0]?.name || "";
   const wanted = found && where ? { plan: found.name, bench: where, values: valuesOf(found, texts) } : null;
   const forecast = useForecast(wanted, wrongIn(found, texts));
+  const torques = torquesOf(forecast.forecast ?? (found && areUsual(found, texts) ? found : null)); // with the values as they are typed
   const start = async (event: Event) => {
     event.preventDefault();
     if (!wanted) return;
@@ -64,7 +65,7 @@ export function StartPlan({ bench, plan, from }: { bench?: string; plan?: string
       {found ? <VariableFields plan={found} texts={texts} onChange={setTexts} /> : null}
       <button type="submit" class="main" disabled={!wanted || forecast.refused}>{t("Queue the run")}</button>
       <div class="forecast" aria-live="polite">
-        {found && areUsual(found, texts) ? <p>{t("Largest torque asked for: {torques}.", { torques: torquesOf(found) })}</p> : null}
+        {torques ? <p>{t("Largest torque asked for: {torques}.", { torques })}</p> : null}
         {found ? <ForecastShown of={forecast} /> : null}
       </div>
     </form>

@@ -9,6 +9,7 @@ import { attempt, useData, type Asked } from "../../data.ts";
 import { bytes, duration, percent, whole } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
 import { t } from "../../i18n/text.ts";
+import { agreed } from "../../question.ts";
 import { go } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { Badge, Facts, Heading, Loaded, Moment, Scroll, Section } from "../../ui/parts.tsx";
@@ -62,7 +63,7 @@ export function RecordingView({ id }: { id: number }): JSX.Element {
 function Found({ recording: one, onChanged }: { recording: Recording; onChanged: () => void }): JSX.Element {
   const may = useMay(), isReady = one.state === "ready", channels = one.channels ?? [], others = (useRecordings().data ?? []).filter((other) => other.id !== one.id && other.state === "ready"), notes = one.notes ?? [];
   const remove = async () => {
-    if (!confirm(t("Remove the recording {name}? Studies of it stay.", { name: one.name }))) return;
+    if (!(await agreed(t("Remove the recording {name}? Studies of it stay.", { name: one.name }), t("Remove"), t("Cancel")))) return;
     if (await attempt(async () => { await ask("DELETE", `/recordings/${one.id}`); return true; })) go(to.list("recordings"));
   };
   return (

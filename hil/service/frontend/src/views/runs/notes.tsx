@@ -9,6 +9,7 @@ import { attempt, useData } from "../../data.ts";
 import { DraftNotice } from "../../editor/draft-notice.tsx";
 import { useDraft } from "../../editor/use-draft.ts";
 import { t } from "../../i18n/text.ts";
+import { agreed } from "../../question.ts";
 import { useMay, useMe } from "../../session.ts";
 import { Moment, Section, Written } from "../../ui/parts.tsx";
 import { isTooLong, TooLong } from "../../ui/too-long.tsx";
@@ -61,10 +62,11 @@ function AddTag({ onAdd }: { onAdd: (tag: string) => Promise<boolean> }): JSX.El
 
 function NoteShown({ note, onRemove }: { note: Note; onRemove: () => void }): JSX.Element {
   const may = useMay(), me = useMe();
+  const remove = async () => { if (await agreed(t("Remove this note?"), t("Remove"), t("Cancel"))) onRemove(); };
   return (
     <article class="note" aria-label={t("Note of {who}", { who: note.who })}>
       <p class="quiet">{note.who}, <Moment at={note.at} />
-        {may("engineer") || (may("operator") && note.who === me.name) ? <button type="button" class="plain" onClick={() => { if (confirm(t("Remove this note?"))) onRemove(); }}>{t("Remove")}</button> : null}
+        {may("engineer") || (may("operator") && note.who === me.name) ? <button type="button" class="plain" onClick={() => void remove()}>{t("Remove")}</button> : null}
       </p>
       <Written>{note.text}</Written>
     </article>

@@ -1,13 +1,14 @@
 // What runs are filtered by: choices are what there is, words are looked for in plan, title, device and person.
 
 import type { JSX } from "preact";
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import type { RunChoices } from "../../api/types.ts";
 import { useData } from "../../data.ts";
 import { t } from "../../i18n/text.ts";
 import { kindInWords } from "../../ui/kinds.ts";
 import { NumberInput } from "../../ui/number-field.tsx";
 import { isTooLong, LimitedField } from "../../ui/too-long.tsx";
+import { whyInvalid } from "../../ui/why-invalid.ts";
 import { FILTERS, type Filter, type RunsQuery } from "./runs-query.ts";
 
 const LONGEST_WORDS = 200;
@@ -37,6 +38,7 @@ export function RunFilters({ query, onChange }: { query: RunsQuery; onChange: (q
       {query.criterion ? <Typed label={t("at least")} type="number" value={query.above} onChange={(above) => onChange({ ...query, above })} /> : null}
       {query.criterion ? <Typed label={t("at most")} type="number" value={query.below} onChange={(below) => onChange({ ...query, below })} /> : null}
       {filtered ? <button type="button" class="plain" onClick={clear}>{t("Clear all")}</button> : null}
+      {query.since && query.until && query.until < query.since ? <p class="bad small" role="alert">{t("“To” is before “From”: no run ended between them.")}</p> : null}
     </form>
   );
 }
@@ -55,14 +57,27 @@ function Choice({ label, value, all, onChange }: { label: string; value: string;
 
 // Asked for when somebody has stopped typing.
 function Typed({ label, type, value, onChange }: { label: string; type: "search" | "date" | "number"; value: string; onChange: (value: string) => void }): JSX.Element {
-  const [text, setText] = useState(value);
+  const [text, setText] = useState(value), latest = useRef(onChange);
+  latest.current = onChange; // another filter may have been typed meanwhile
   useEffect(() => setText(value), [value]);
   useEffect(() => {
     if (text === value || isTooLong(text, LONGEST_WORDS)) return undefined;
-    const timer = setTimeout(() => onChange(text), WAIT_MS);
+    const timer = setTimeout(() => latest.current(text), WAIT_MS);
     return () => clearTimeout(timer);
   }, [text]);
-  const take = (event: { currentTarget: HTMLInputElement }) => setText(event.currentTarget.value);
   if (type === "search") return <LimitedField label={label} most={LONGEST_WORDS} search value={text} onText={setText} />;
-  return <label class="field">{label}{type === "date" ? <input type="date" value={text} onInput={take} /> : <NumberInput value={text} onText={setText} />}</label>;
+  return type === "date" ? <Day label={label} value={text} onText={setText} /> : <label class="field">{label}<NumberInput value={text} onText={setText} /></label>;
+}
+
+// Half a date is no filter: that is said when the field is left.
+function Day({ label, value, onText }: { label: string; value: string; onText: (day: string) => void }): JSX.Element {
+  const [why, setWhy] = useState("");
+  return (
+    <div>
+      <label class="field">{label}
+        <input type="date" value={value} aria-invalid={why !== ""} onInput={(event) => { setWhy(""); onText(event.currentTarget.value); }} onBlur={({ currentTarget: field }) => setWhy(field.validity.valid ? "" : whyInvalid(field))} />
+      </label>
+      {why ? <span class="bad small" role="alert">{why}</span> : null}
+    </div>
+  );
 }

@@ -1,6 +1,7 @@
 // A run, under way and afterwards: one view, over what is measured or over what was recorded.
 
 import type { JSX } from "preact";
+import { useMemo } from "preact/hooks";
 import { post } from "../../api/client.ts";
 import type { Bench, Run, RunView as View } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
@@ -17,10 +18,11 @@ import { Badge, Facts, Heading, Loaded, Moment, Section, verdictOf } from "../..
 import { Banner, ResetOf } from "../bench-banner.tsx";
 import { againWith } from "../plans/start-values.ts";
 import { Criteria } from "../criteria.tsx";
+import { limitsOf } from "./failed-limits.ts";
 import { Notes } from "./notes.tsx";
 import { isPassed, Outcome } from "./outcome.tsx";
 import { look, rangeOfSegment } from "./places.ts";
-import { valuesOf } from "./run-values.ts";
+import { tookOf, valuesOf } from "./run-values.ts";
 import { Unsettled } from "./unsettled.tsx";
 import { WhyItWaits } from "./waiting.tsx";
 import { BestRun } from "./best-run.tsx";
@@ -42,6 +44,7 @@ function Found({ run, bench }: { run: Run; bench: Bench | null }): JSX.Element {
   const recorded = isOver && (run.files ?? []).includes("recording.mcap");
   // What was seen of a run under way is not its recording. All else stays as it ends: somebody may be typing a note.
   const path = `/runs/${run.id}/view`, ofLive = useData<View>(isLive ? path : null, AGAIN_MS), ofRecording = useData<View>(recorded ? path : null), view = isLive ? ofLive : ofRecording;
+  const limits = useMemo(() => (view.data ? limitsOf(view.data) : []), [view.data]);
   const live = useLive(isLive ? run.bench : null);
   const state = useStore(live.state), decided = useStore(live.criteria);
   const criteria = isLive ? (decided?.run === run.id ? decided.criteria : []) : view.data?.criteria ?? [];
@@ -56,7 +59,7 @@ function Found({ run, bench }: { run: Run; bench: Bench | null }): JSX.Element {
       <RunFacts run={run} />
       <RunActions run={run} />
       {view.data ? (
-        <Section title={t("Plots")} label="plots"><Board key={run.state} view={view.data} plan={run.plan} bench={isLive ? run.bench : null} /></Section>
+        <Section title={t("Plots")} label="plots"><Board key={run.state} view={view.data} limits={limits} plan={run.plan} bench={isLive ? run.bench : null} /></Section>
       ) : isLive ? <p class="quiet">{t("Nothing has been measured yet.")}</p> : recorded ? <Loaded of={view} what={t("the recording")}>{() => null}</Loaded> : null}
       {isLive || criteria.length ? <Section title={t("Criteria")} label="criteria"><Criteria of={criteria} onSegment={(segment) => { const range = view.data && rangeOfSegment(view.data, segment); if (range) look(range); }} /></Section> : null}
       {view.data ? <Happenings view={view.data} /> : null}
@@ -78,9 +81,10 @@ function RunFacts({ run }: { run: Run }): JSX.Element {
         run.dut ? [t("device under test"), run.dut] : null,
         [t("asked for by"), run.requested_by],
         run.approved_by ? [t("approved by"), run.approved_by] : null,
-        [t("queued at"), <Moment at={run.queued_at} />],
-        run.started_at ? [t("began"), <Moment at={run.started_at} />] : null,
-        run.ended_at ? [t("ended"), <Moment at={run.ended_at} />] : null,
+        [t("queued at"), <Moment at={run.queued_at} exact />],
+        run.started_at ? [t("began"), <Moment at={run.started_at} exact />] : null,
+        run.ended_at ? [t("ended"), <Moment at={run.ended_at} exact />] : null,
+        tookOf(run) ? [t("duration"), tookOf(run)] : null,
         run.safe_state ? [t("safe state"), <span class={run.safe_state === "not_confirmed" ? "bad" : ""}>{safe[run.safe_state]}</span>] : null,
         run.reason && !(OVER.includes(run.state) && !isPassed(run)) ? [t("reason"), <English>{run.reason}</English>] : null,
         run.hazard ? [t("hazard"), run.hazard] : null,

@@ -12,7 +12,7 @@ import { go, useQuery } from "../../router.ts";
 import { Badge, Heading, linkTo, Moment, Scroll, verdictOf } from "../../ui/parts.tsx";
 import { RunFilters } from "./run-filters.tsx";
 import { PAGE, queryFrom, sorted, toAddress, toService, type Order, type RunsQuery } from "./runs-query.ts";
-import { valuesOf } from "./run-values.ts";
+import { tookOf, valuesOf } from "./run-values.ts";
 
 const AGAIN_MS = 10_000;
 const MOST_COMPARED = 6;
@@ -52,7 +52,7 @@ export function Runs(): JSX.Element {
   );
 }
 
-const COLUMNS: [Order | "", string, string][] = [["run", t("run"), "number"], ["plan", t("plan"), ""], ["verdict", t("verdict"), ""], ["bench", t("bench"), ""], ["dut", t("device"), ""], ["ended", t("ended"), ""], ["", t("by"), ""]];
+const COLUMNS: [Order | "", string, string][] = [["run", t("run"), "number"], ["plan", t("plan"), ""], ["verdict", t("verdict"), ""], ["bench", t("bench"), ""], ["dut", t("device"), ""], ["ended", t("ended"), ""], ["", t("duration"), "number"], ["", t("by"), ""]];
 
 interface TableOptions {
   runs: FoundRun[];
@@ -97,6 +97,7 @@ function Row({ found, withValue, chosen, onChoose }: { found: FoundRun; withValu
       <td><a href={to.bench(run.bench)}>{run.bench}</a></td>
       <td>{run.dut || "–"}</td>
       <td>{run.ended_at ? <Moment at={run.ended_at} /> : <span class="quiet">{t("queued")} <Moment at={run.queued_at} /></span>}</td>
+      <td class="number">{tookOf(run) || "–"}</td>
       <td>{run.requested_by}</td>
     </tr>
   );

@@ -7,6 +7,7 @@ import { to } from "../../addresses.ts";
 import { attempt, useData } from "../../data.ts";
 import { English } from "../../i18n/english.tsx";
 import { t, tn } from "../../i18n/text.ts";
+import { agreed } from "../../question.ts";
 import { go } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { kindInWords } from "../../ui/kinds.ts";
@@ -89,7 +90,7 @@ function questionOf({ kind, id: number }: Study): string {
 function Found({ study, children }: { study: Study; children: ComponentChildren }): JSX.Element {
   const may = useMay(), isOver = OVER.includes(study.state), files = study.files ?? [];
   const remove = async () => {
-    if (!confirm(questionOf(study))) return;
+    if (!(await agreed(questionOf(study), t("Remove"), t("Cancel")))) return;
     if (await attempt(async () => { await ask("DELETE", `/studies/${study.id}`); return true; })) go(to.list(listOf(study.kind)));
   };
   return (

@@ -5,13 +5,14 @@ import { ask } from "../../api/client.ts";
 import type { Person } from "../../api/types.ts";
 import { attempt, useData } from "../../data.ts";
 import { t } from "../../i18n/text.ts";
+import { agreed } from "../../question.ts";
 import { kindInWords } from "../../ui/kinds.ts";
 import { Moment, Scroll, Section } from "../../ui/parts.tsx";
 
 export function People(): JSX.Element | null {
   const found = useData<Person[]>("/people");
   if (!found.data?.length) return null;
-  const signOut = (one: Person) => { if (confirm(t("Sign {name} out everywhere?", { name: one.name }))) void attempt(() => ask("DELETE", `/people/${one.id}/sessions`)).then(found.again); };
+  const signOut = async (one: Person) => { if (await agreed(t("Sign {name} out everywhere?", { name: one.name }), t("Sign out"), t("Cancel"))) void attempt(() => ask("DELETE", `/people/${one.id}/sessions`)).then(found.again); };
   return (
     <Section title={t("People")} label="people">
       <Scroll label={t("People")}>
@@ -21,7 +22,7 @@ export function People(): JSX.Element | null {
             {found.data.map((one) => (
               <tr key={one.id}>
                 <th scope="row">{one.name}</th><td>{kindInWords(one.role)}</td><td><Moment at={one.signed_in_at} /></td><td>{one.subject}</td>
-                <td><button type="button" aria-label={t("Sign out {name}", { name: one.name })} onClick={() => signOut(one)}>{t("Sign out")}</button></td>
+                <td><button type="button" aria-label={t("Sign out {name}", { name: one.name })} onClick={() => void signOut(one)}>{t("Sign out")}</button></td>
               </tr>
             ))}
           </tbody>

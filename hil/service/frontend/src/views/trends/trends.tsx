@@ -9,6 +9,7 @@ import { English } from "../../i18n/english.tsx";
 import { t } from "../../i18n/text.ts";
 import { useQuery } from "../../router.ts";
 import { Section } from "../../ui/parts.tsx";
+import { useSameValues, WhichRuns } from "./same-values.tsx";
 import { Signals } from "./signals.tsx";
 import { TrendPlot } from "./trend-plot.tsx";
 
@@ -23,7 +24,8 @@ export function Trends({ bench, plan, empty }: { bench: string; plan: string; em
     setChosen(next);
   };
   const setDut = (value: string) => put("dut", value), setCriterion = (value: string) => put("criterion", value);
-  const query = new URLSearchParams({ bench, plan, ...(dut ? { dut } : {}) });
+  const same = useSameValues(bench, plan), like = /^[1-9]\d{0,8}$/.test(chosen.get("like") ?? "") ? Number(chosen.get("like")) : null;
+  const query = new URLSearchParams({ bench, plan, ...(dut ? { dut } : {}), ...(like === null ? {} : { like: String(like) }) });
   const asked = useData<Trend[]>(`/trends?${query}`), all = asked.data ?? NONE;
   const found = all.filter((one) => one.points.some((point) => point.value !== null));
   const [duts, setDuts] = useState<string[]>([]);
@@ -36,6 +38,7 @@ export function Trends({ bench, plan, empty }: { bench: string; plan: string; em
   if (!trend) return empty && asked.data ? <p class="quiet">{empty}</p> : null;
   return (
     <Section title={t("Trend over runs of {plan}", { plan })} label="trend">
+      {same ? <WhichRuns of={same} like={like} onChoose={(run) => put("like", run === same[0]?.run ? "" : String(run))} /> : null}
       <Drifting of={found} chosen={trend.criterion} onChoose={setCriterion} />
       <div class="row small">
         <label>{t("Criterion")} <select value={trend.criterion} onChange={(event) => setCriterion(event.currentTarget.value)}>{found.map((one) => <option key={one.criterion}>{one.criterion}</option>)}</select></label>
