@@ -21,6 +21,7 @@ _VALUES = 10.0  # independent ones that a misfit holds: one an octave
 _DIGITS = 1e-6  # of a channel's rms: its noise at least
 _ROUNDS = 2  # outputs change nearly linearly with a start
 _STEP = 1e-3  # of a channel's rms, for derivatives
+_FAR = 1e9  # noises: a model that runs away is so far off, not infinitely far
 
 
 def beginning(values: Array) -> tuple[float, float]:
@@ -79,7 +80,7 @@ def settled(
 
     def errors_of(start: Array) -> Array:
         error = np.where(there, measured - show(start), 0.0) / noise
-        return np.asarray(np.nan_to_num(error, nan=1e9), dtype=float)
+        return np.asarray(np.clip(np.nan_to_num(error, nan=_FAR), -_FAR, _FAR), dtype=float)
 
     start = _least(first, unsure, steps, away, np.where(there, 1.0, 0.0))
     misfit = np.maximum(np.mean(away(start) ** 2, axis=0), 1.0)
