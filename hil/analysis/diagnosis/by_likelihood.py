@@ -84,7 +84,13 @@ def diagnosis_of(
         map_after=fitted.map_after,
         signature=remaining,
         overlays=fitted.overlays,
-        notes=(*notes, *found.notes, *_classes(found.effects), *([doubt] if doubt else ())),
+        notes=(
+            *notes,
+            *found.notes,
+            *_classes(found.effects),
+            *_steadied(found),
+            *([doubt] if doubt else ()),
+        ),
         seconds=found.seconds,
         consequences=consequences(base, found.model, found.as_likely),
         start=start,
@@ -235,6 +241,17 @@ def _alternatives(found: Outcome, shown: _Shown) -> tuple[Alternative, ...]:
         name = plan_file(one.use) if plan else None
         others.append(Alternative(one.use, confidence, text, name, plan or None))
     return tuple(others)
+
+
+def _steadied(found: Outcome) -> list[str]:
+    """What keeps the model from drifting without a name."""
+    if found.steadied is None:
+        return []
+    values = ", ".join(f"{name} = {value:.3g}" for name, value in found.steadied.values.items())
+    return [
+        f"without any loss the model would drift: it carries {found.steadied.id} ({values}), which is not "
+        "named, as these recordings do not excite what tells losses apart: record a coast-down"
+    ]
 
 
 def _classes(effects: Sequence[Named]) -> list[str]:

@@ -65,7 +65,7 @@ def explain_gap(
             model,
             done,
             shown.left,
-            lambda best: (shown.gaps(fitted, best), shown.gaps(held_out, best) if holdout else {}),
+            lambda given: (shown.gaps(fitted, given), shown.gaps(held_out, given) if holdout else {}),
             fitted,
             held_out,
         ),
@@ -99,9 +99,9 @@ class _Shown:
         whole = replace(self.problem, series=tuple(s for one in both for s in one.series))
         return whole.mean_square([e for one in both for e in self.point(one, hypothesis).errors])
 
-    def gaps(self, replays: Sequence[Replay], best: Candidate) -> dict[str, Gap]:
-        """Of the base, the numbers alone and the best hypothesis."""
-        three = (self.problem.model, *(one.point.hypothesis.model() for one in (self.done.found[()], best)))
+    def gaps(self, replays: Sequence[Replay], given: Model) -> dict[str, Gap]:
+        """Of the base, the numbers alone and the model given back."""
+        three = (self.problem.model, self.done.found[()].point.hypothesis.model(), given)
         each = map_on_threads(lambda one: [one.errors(model) for model in three], replays)
         errors = [np.concatenate(parts) for parts in zip(*each, strict=True)]
         measured = np.concatenate([one.series.measured for one in replays])

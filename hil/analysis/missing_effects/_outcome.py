@@ -89,7 +89,8 @@ class Outcome:
     `numbers` by name: base, found, standard error. `something_else` is what the model given back leaves of
     what the numbers alone leave beyond noise, recordings held out included (0 to 1). `curves` show
     what stays. `noise` (3,) is the proven standard deviation of one sample, NaN where a channel was not
-    recorded. `as_likely` are models drawn from what the fit knows of its numbers.
+    recorded. `as_likely` are models drawn from what the fit knows of its numbers. `steadied` is a drag in
+    the model without a name: it keeps it from drifting where recordings do not excite what would name it.
     """
 
     verdict: Verdict
@@ -108,6 +109,7 @@ class Outcome:
     as_likely: tuple[Model, ...]
     fitted: tuple[Replay, ...]
     held_out: tuple[Replay, ...]
+    steadied: EffectUse | None = None
 
     def as_json(self) -> dict[str, Any]:
         """The content of `diagnosis.json`."""

@@ -20,6 +20,7 @@ import numpy.typing as npt
 from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._constancy import constancy
 from hil.analysis.missing_effects._curve import curves_of
+from hil.analysis.missing_effects._drift import held_against_drift
 from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised, point_at
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._mismatch import as_the_base_has, is_far, mismatches, numbers_of
@@ -52,7 +53,7 @@ class Judged:
     asked: Model
     done: Candidates
     left: Callable[[Candidate], Array]
-    gaps: Callable[[Candidate], tuple[dict[str, Gap], dict[str, Gap]]]
+    gaps: Callable[[Model], tuple[dict[str, Gap], dict[str, Gap]]]
     fitted: tuple[Replay, ...]
     held_out: tuple[Replay, ...]
 
@@ -89,11 +90,14 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     elif not best.names and done.problem.is_noise(best.point.errors):
         verdict = "none"
     others = _others(of, best, candidates, weights)
+    given, steadied = best.point.hypothesis, held_against_drift(done.problem, best.point)
+    model = (given.with_term(steadied) if steadied else given).model()
     return Outcome(
         verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), something_else, numbers, far,
-        *of.gaps(best), best.point.hypothesis.model(),
+        *of.gaps(model), model,
         curves_of(best.point.hypothesis, done.problem.series), notes, seconds,
         done.problem.noise * np.sqrt(done.problem.series[0].block), at.drawn(_DRAWN), of.fitted, of.held_out,
+        steadied,
     )  # fmt: skip
 
 
