@@ -62,25 +62,34 @@ def lead(found: Diagnosis) -> str:
     """The verdict in numbers."""
     if found.verdict == "unknown":
         return f"What is known of it: {found.signature}."
-    before, after = _over_noise(found.gap_before), _over_noise(found.gap_after)
-    worst, left = max(before, key=lambda c: before[c]), max(after.values())
-    name = channel_label(worst).text.lower()
-    held = max(_over_noise(found.holdout_after).values(), default=None)
-    also = "" if held is None else f", {multiple(held)} in held-out recordings"
     if found.verdict == "none":
-        return f"The gap is at most {multiple(left)} the noise{also}."
+        left, held = (
+            max(_over_noise(one).values(), default=None) for one in (found.gap_after, found.holdout_after)
+        )
+        also = "" if held is None else f", {multiple(held)} in held-out recordings"
+        return f"The gap is at most {multiple(left or 0.0)} the noise{also}."
+    before, after, where = _telling(found)
+    worst = max(before, key=lambda channel: before[channel].noises)
+    had, has, noise = before[worst].gap, after[worst].gap, before[worst].noise_floor
+    closed = (had - has) / max(had - noise, 1e-12)
+    closes = f"closes {share(min(closed, 1.0))} of the largest gap" if closed > 0.0 else "closes no gap"
     return (
-        f"Largest gap of the model before: {multiple(before[worst])} the noise ({name}); of the model after: "
-        f"{multiple(left)} the noise{also}."
+        f"On {where} the model after {closes}: {channel_label(worst).text.lower()} is "
+        f"{share(had, 2, digits=3)} of its signal off before, {share(has, 2, digits=3)} after; "
+        f"noise is {share(noise, 2, digits=3)}."
     )
+
+
+def _telling(found: Diagnosis) -> tuple[dict[str, ChannelGap], dict[str, ChannelGap], str]:
+    """The gaps that count most, before and after: of recordings not used in the fit where there are any."""
+    if found.holdout_after:
+        return found.holdout_before, found.holdout_after, "held-out recordings"
+    return found.gap_before, found.gap_after, "the recordings that were fitted"
 
 
 def _bars(found: Diagnosis) -> GapBars:
-    """The gaps that count most: of recordings not used in the fit where there are any."""
-    held = bool(found.holdout_after)
-    before, after = (
-        (found.holdout_before, found.holdout_after) if held else (found.gap_before, found.gap_after)
-    )
+    """The gaps that count most."""
+    before, after, where = _telling(found)
     rows = tuple(
         GapRow(
             channel_label(channel).text,
@@ -90,7 +99,6 @@ def _bars(found: Diagnosis) -> GapBars:
         )
         for channel, gap in after.items()
     )
-    where = "held-out recordings" if held else "the recordings that were fitted"
     return GapBars("gap-bars", Label("Measured minus simulated"), rows, f"On {where}.", wide=False)
 
 
