@@ -49,6 +49,17 @@ def test_a_click_on_the_stop_behind_the_palette_stops(page: playwright.Page, the
     assert there.get("/benches/sim")["state"] == "emergency_stop"
 
 
+def test_the_tab_key_leads_from_the_palette_to_the_stop(page: playwright.Page, there: Served) -> None:
+    to(page, there, "benches/sim")
+    page.keyboard.press("Control+k")
+    expect(page.get_by_role("combobox", name="Find a plan")).to_be_focused()
+    page.keyboard.press("Tab")
+    expect(page.locator("button.stop")).to_be_focused()
+    with page.expect_response("**/emergency-stop"):
+        page.keyboard.press("Enter")
+    assert there.get("/benches/sim")["state"] == "emergency_stop"
+
+
 def test_a_stop_that_nobody_takes_is_not_delivered(page: playwright.Page, there: Served) -> None:
     to(page, there, "benches/sim")
     page.route("**/emergency-stop", lambda _: None)  # never answered

@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from playwright import sync_api as playwright
@@ -53,28 +54,64 @@ def test_where_no_speed_is_known_a_reset_asks_whether_the_axle_stands(
     expect(heading(page, "Bench sim Free")).to_be_visible()
 
 
-def test_a_speed_that_is_old_when_one_confirms_is_asked_about_anew(
+def _seen(bench: dict[str, Any], speed_rad_s: float, ago_s: float) -> dict[str, Any]:
+    """A bench whose motor was last seen to turn so long ago."""
+    at = (datetime.datetime.now(datetime.UTC) - datetime.timedelta(seconds=ago_s)).isoformat()
+    return {**bench, "last_speed": {"speed_rad_s": speed_rad_s, "at": at, "turns": True}}
+
+
+def test_a_question_shows_each_look_as_it_comes_and_is_asked_once(
     page: playwright.Page, there: Served
 ) -> None:
+    """Whoever walks to the axle before the answer is not asked for ever."""
     there.post("/benches/sim/emergency-stop")
-    bench, looked = there.get("/benches/sim"), datetime.datetime.now(datetime.UTC)
-
-    def seen(speed_rad_s: float, ago_s: float) -> dict[str, object]:
-        at = (looked - datetime.timedelta(seconds=ago_s)).isoformat()
-        return {**bench, "last_speed": {"speed_rad_s": speed_rad_s, "at": at, "turns": True}}
-
-    page.route("**/api/v1/benches", lambda route: route.fulfill(json=[seen(137, 20)]))
-    page.route("**/api/v1/benches/sim", lambda route: route.fulfill(json=seen(42, 3)))
+    bench = there.get("/benches/sim")
+    speeds = iter([137.0, 137.0, *[42.0] * 1000])
+    page.route("**/api/v1/benches", lambda route: route.fulfill(json=[_seen(bench, 137.0, 3)]))
+    page.route("**/api/v1/benches/sim", lambda route: route.fulfill(json=_seen(bench, next(speeds), 3)))
     to(page, there, "benches")
     page.get_by_role("button", name=_RESET).click()
     asked = page.get_by_role("alertdialog")
     expect(asked).to_contain_text("the motor turned at 137")
-    asked.get_by_role("button", name="It stands still: reset").click()
-    expect(asked).to_contain_text("the motor turned at 42.0")  # as it is by now
+    expect(asked).to_contain_text("the motor turned at 42.0")
     page.unroute("**/api/v1/benches")
-    assert there.get("/benches/sim")["state"] == "emergency_stop"
     answer(page, "It stands still: reset")
+    page.unroute("**/api/v1/benches/sim")
     expect(page.get_by_role("listitem").filter(has_text="sim")).to_contain_text("Free")
+
+
+def test_a_look_from_before_the_stop_is_followed_by_one_from_after_it(
+    page: playwright.Page, there: Served
+) -> None:
+    there.post("/benches/sim/emergency-stop")
+    bench = there.get("/benches/sim")
+    old, new = _seen(bench, 137.0, 200), _seen(bench, 42.0, 0)
+    shown = [old]
+    page.route("**/api/v1/benches", lambda route: route.fulfill(json=[old]))
+    page.route("**/api/v1/benches/sim", lambda route: route.fulfill(json=shown[0]))
+    to(page, there, "benches")
+    page.get_by_role("button", name=_RESET).click()
+    asked = page.get_by_role("alertdialog")
+    asked.get_by_role("button", name="It stands still: reset").click()
+    expect(page.get_by_role("button", name="Looking at the speed …")).to_be_disabled()
+    shown[0] = new
+    expect(asked).to_contain_text("the motor turned at 42.0")
+    assert there.get("/benches/sim")["state"] == "emergency_stop"
+    page.unroute("**/api/v1/benches")
+    answer(page, "It stands still: reset")
+    page.unroute("**/api/v1/benches/sim")
+    expect(page.get_by_role("listitem").filter(has_text="sim")).to_contain_text("Free")
+
+
+def test_a_question_about_a_stop_that_was_reset_elsewhere_closes(
+    page: playwright.Page, there: Served
+) -> None:
+    there.post("/benches/sim/emergency-stop")
+    to(page, there, "benches/sim")
+    region(page, "State of sim").get_by_role("button", name=_RESET).click()
+    expect(page.get_by_role("alertdialog")).to_be_visible()
+    there.post("/benches/sim/reset")
+    expect(page.get_by_role("alertdialog")).to_be_hidden()
 
 
 def test_a_stop_says_at_once_when_it_can_be_reset(page: playwright.Page, there: Served) -> None:

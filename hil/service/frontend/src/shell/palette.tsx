@@ -14,7 +14,7 @@ import { runInWords } from "../ui/run-kind.ts";
 import { valuesOf } from "../views/runs/run-values.ts";
 import { found, type Entry } from "./matching.ts";
 import { commands } from "./commands.ts";
-import { benchInSight, pressStopAt } from "./stop.tsx";
+import { benchInSight, focusStop, pressStopAt } from "./stop.tsx";
 
 export const paletteOpen = new Store(false);
 const MOST = 12;
@@ -49,6 +49,7 @@ function Open(): JSX.Element {
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
     if (step) setAt((one) => (one + step + shown.length) % Math.max(1, shown.length));
     else if (event.key === "Enter") choose(shown[at]);
+    else if (event.key === "Tab") focusStop(close); // it is out of reach behind this window, and never may be
     else return;
     event.preventDefault();
   };

@@ -58,6 +58,12 @@ export function pressStopAt(x: number, y: number): void {
   if (button && box && x >= box.left && x <= box.right && y >= box.top && y <= box.bottom) button.click();
 }
 
+// To the stop from a window that holds the focus, once that is closed.
+export function focusStop(close: () => void): void {
+  close();
+  setTimeout(() => document.querySelector<HTMLElement>("button.stop")?.focus());
+}
+
 export function StopButton(): JSX.Element {
   const bench = useStore(benchInSight), untaken = useStore(untakenStop);
   const [state, setState] = useState<"" | "sending" | "taken">("");

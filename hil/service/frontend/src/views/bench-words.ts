@@ -102,15 +102,15 @@ export function resetText(next: Run | null | undefined): string {
 }
 
 const FRESH_MS = 5000; // a look at the speed says something of now
+const RECENT_MS = 8000; // the newest of looks that go on: while an axle turns there is one every five or six seconds
 
-const isFresh = (bench: Bench, nowMs: number): boolean => bench.last_speed != null && nowMs - Date.parse(bench.last_speed.at) <= FRESH_MS;
+const isWithin = (bench: Bench, nowMs: number, ms: number): boolean => bench.last_speed != null && nowMs - Date.parse(bench.last_speed.at) <= ms;
 
 // Whether the service has just seen that the motor stands.
-export const isFreshStandstill = (bench: Bench, nowMs: number): boolean => isFresh(bench, nowMs) && bench.last_speed?.turns === false;
+export const isFreshStandstill = (bench: Bench, nowMs: number): boolean => isWithin(bench, nowMs, FRESH_MS) && bench.last_speed?.turns === false;
 
-// Whether a person was shown a look that is old by now, while there is a newer one.
-export const isNewerLook = (shown: Bench, now: Bench, nowMs: number): boolean =>
-  now.last_speed != null && !isFresh(shown, nowMs) && now.last_speed.at !== shown.last_speed?.at;
+// Whether the service's looks at the speed go on, so that what a window shows of it is of now.
+export const isRecentLook = (bench: Bench, nowMs: number): boolean => isWithin(bench, nowMs, RECENT_MS);
 
 // What happens from a stop to the end of its run: until then nobody can reset it, and somebody must afterwards.
 export const stoppingText = (): string =>
