@@ -23,7 +23,6 @@ from hil.analysis.diagnosis.tell.result import (
     Overlay,
     Start,
     Verdict,
-    label_of,
 )
 from hil.analysis.diagnosis.tell.separating import plan_file, plan_within_recordings, worth_a_plan
 from hil.analysis.diagnosis.tell.thresholds import CHANNEL_NOISES
@@ -230,7 +229,7 @@ def _alternatives(found: Outcome, shown: _Shown) -> tuple[Alternative, ...]:
     ratio = gear_ratio_of(found.model) or 1.0
     others = []
     for one in found.alternatives:
-        confidence = shared.get(label_of(one.use), one.confidence)
+        confidence = shared.get(EFFECTS[one.id].label(one.use.values), one.confidence)
         if found.effects and not round(confidence, 2):
             continue  # it would be shown as 0
         text, plan = one.separating_test or EFFECTS[one.id].shown_by, ""

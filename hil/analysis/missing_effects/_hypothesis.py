@@ -175,8 +175,7 @@ class Hypothesis:
 
 def label_of(use: EffectUse) -> str:
     """An effect's name, with the channel or parameter that it is about."""
-    about = [str(use.values[name]) for name in EFFECTS[use.id].text_parameters]
-    return f"{use.id}({', '.join(about)})" if about else use.id
+    return EFFECTS[use.id].label(use.values)
 
 
 def _of_effect(index: int, use: EffectUse, parameter: Parameter) -> Coordinate:

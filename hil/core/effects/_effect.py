@@ -181,6 +181,11 @@ class Effect:
         """`values`, which need not give optional numbers, with the defaults of those."""
         return {p.name: p.default for p in self.parameters if p.optional} | dict(values)
 
+    def label(self, values: Mapping[str, object]) -> str:
+        """The effect's name, with the channel or parameter that it is about."""
+        about = [str(values[name]) for name in self.text_parameters if name in values]
+        return f"{self.id}({', '.join(about)})" if about else self.id
+
     def check(self, values: Mapping[str, object], where: str) -> dict[str, float | str]:
         """Return `values` complete with defaults.
 

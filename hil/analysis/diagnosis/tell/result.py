@@ -40,7 +40,7 @@ class NamedEffect:
     @property
     def class_(self) -> str:
         """Its name and those that the data cannot tell from it; empty where it stands alone."""
-        return " or ".join((label_of(self.use), *self.alike)) if self.alike else ""
+        return " or ".join((EFFECTS[self.use.id].label(self.use.values), *self.alike)) if self.alike else ""
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ class Diagnosis:
 
     def class_of(self, other: Alternative) -> str:
         """The class of names, which the data cannot tell apart, that an alternative is in; empty without."""
-        label = label_of(other.use)
+        label = EFFECTS[other.use.id].label(other.use.values)
         return next((one.class_ for one in self.effects if label in one.alike), "")
 
     def as_json(self) -> dict[str, Any]:
@@ -234,12 +234,6 @@ def _effect(effect: NamedEffect) -> dict[str, Any]:
             "condition": effect.where.condition,
         },
     }
-
-
-def label_of(use: EffectUse) -> str:
-    """An effect's name, with the channel or parameter that it is about."""
-    about = [str(use.values[name]) for name in EFFECTS[use.id].text_parameters if name in use.values]
-    return f"{use.id}({', '.join(about)})" if about else use.id
 
 
 def derived_of(use: EffectUse) -> dict[str, float]:
