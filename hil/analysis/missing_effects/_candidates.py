@@ -52,15 +52,18 @@ class Candidates:
         return self.score(candidate) - self.score(replace(candidate, free=candidate.free + 1))
 
     def least(self, best: Candidate) -> float:
-        """What a name more must promise: where noise is all that is left, more than slow noise would give."""
-        noise = self.problem.is_noise(best.point.errors)
-        return self.cost_of_a_number(best) * (self.problem.slow_noise if noise else 1.0)
+        """What a name more must promise."""
+        return self.cost_of_a_number(best) * self._times(best)
 
     def gains(self, best: Candidate, grown: Candidate) -> bool:
-        """Whether a name more pays, where noise is all that is left by more than slow noise would give."""
+        """Whether a name more pays."""
         grew = grown.log_likelihood - best.log_likelihood
         costs = grew - (self.score(grown) - self.score(best))
-        return grew > costs * (self.problem.slow_noise if self.problem.is_noise(best.point.errors) else 1.0)
+        return grew > costs * self._times(best)
+
+    def _times(self, best: Candidate) -> float:
+        """How often a name more must bring its cost: where noise is left, more than slow noise would give."""
+        return self.problem.slow_noise if self.problem.is_noise(best.point.errors) else 1.0
 
     def may_gain(self, candidate: Candidate) -> bool:
         """Whether one more name could pay, if it left nothing but noise."""

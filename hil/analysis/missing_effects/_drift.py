@@ -15,7 +15,7 @@ from hil.analysis.missing_effects._fit import Point
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import may_join
-from hil.analysis.missing_effects._search import HALF
+from hil.analysis.missing_effects._search import HALF, is_loss
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 
@@ -28,8 +28,8 @@ _TIMES_S = np.geomspace(0.01, 100.0, 81)  # in which a drag would stop its inert
 def held_against_drift(problem: Problem, point: Point) -> EffectUse | None:
     """The drag with which a hypothesis without any loss leaves least; None where there is no need of one."""
     hypothesis = point.hypothesis
-    losses = [EFFECTS[use.id].law for use in (*hypothesis.base.effects, *hypothesis.terms)]
-    if hypothesis.numbers.get("viscous_drag") or any(law.loss or law.dry or law.load for law in losses):
+    uses = (*hypothesis.base.effects, *hypothesis.terms)
+    if hypothesis.numbers.get("viscous_drag") or any(is_loss(use) for use in uses):
         return None
     if not any(one.lowest_hz > 0.0 for one in problem.series):
         return None

@@ -147,9 +147,9 @@ def _among_losses(done: Candidates, grown: Candidate, show: Callable[[str], None
             show(promise.label)
             instead = done.fitted(fewer.with_term(promise.use), near)
             best = max(best, _opened(done, instead, show), key=done.score)
-    pairs: list[Candidate] = []
     if done.problem.is_noise(best.point.errors):
         return best  # what joins it is looked for by what it promises
+    pairs: list[Candidate] = []
     for one in [one for one in done.found.values() if len(one.names) == 1 and one.names != best.names]:
         other, opened = one.point.hypothesis.terms[0], one.point.hypothesis.opened[0]
         if is_loss(other):

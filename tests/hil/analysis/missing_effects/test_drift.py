@@ -37,6 +37,13 @@ def test_a_drag_keeps_a_model_from_drifting_where_nothing_names_one() -> None:
     assert after < 0.5 * before
 
 
+def test_a_ripple_is_no_loss() -> None:
+    problem = _problem()
+    ripple = EffectUse("motor_order_ripple", {"order": 4.0, "amplitude_nm": 1e-3, "phase_rad": 0.0})
+    hypothesis = Hypothesis(problem.model, dict(problem.model.parameters)).with_term(ripple)
+    assert held_against_drift(problem, with_better_starts(problem, point_at(problem, hypothesis))) is not None
+
+
 @pytest.mark.parametrize("which", ["loss", "chirp"])
 def test_a_loss_that_is_there_or_a_torque_that_excites_all_needs_none(which: str) -> None:
     problem = _problem() if which == "loss" else chirp_problem(1.0, _DRAG)

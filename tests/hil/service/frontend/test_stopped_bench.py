@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import datetime
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -60,6 +60,15 @@ def _seen(bench: dict[str, Any], speed_rad_s: float, ago_s: float) -> dict[str, 
     return {**bench, "last_speed": {"speed_rad_s": speed_rad_s, "at": at, "turns": True}}
 
 
+def _ask(page: playwright.Page, there: Served, listed: dict[str, Any], look: Callable[[], Any]) -> Any:
+    """Ask to reset in the list of benches, which shows one look at the speed; later ones come by `look`."""
+    page.route("**/api/v1/benches", lambda route: route.fulfill(json=[listed]))
+    page.route("**/api/v1/benches/sim", lambda route: route.fulfill(json=look()))
+    to(page, there, "benches")
+    page.get_by_role("button", name=_RESET).click()
+    return page.get_by_role("alertdialog")
+
+
 def test_a_question_shows_each_look_as_it_comes_and_is_asked_once(
     page: playwright.Page, there: Served
 ) -> None:
@@ -67,11 +76,7 @@ def test_a_question_shows_each_look_as_it_comes_and_is_asked_once(
     there.post("/benches/sim/emergency-stop")
     bench = there.get("/benches/sim")
     speeds = iter([137.0, 137.0, *[42.0] * 1000])
-    page.route("**/api/v1/benches", lambda route: route.fulfill(json=[_seen(bench, 137.0, 3)]))
-    page.route("**/api/v1/benches/sim", lambda route: route.fulfill(json=_seen(bench, next(speeds), 3)))
-    to(page, there, "benches")
-    page.get_by_role("button", name=_RESET).click()
-    asked = page.get_by_role("alertdialog")
+    asked = _ask(page, there, _seen(bench, 137.0, 3), lambda: _seen(bench, next(speeds), 3))
     expect(asked).to_contain_text("the motor turned at 137")
     expect(asked).to_contain_text("the motor turned at 42.0")
     page.unroute("**/api/v1/benches")
@@ -87,11 +92,7 @@ def test_a_look_from_before_the_stop_is_followed_by_one_from_after_it(
     bench = there.get("/benches/sim")
     old, new = _seen(bench, 137.0, 200), _seen(bench, 42.0, 0)
     shown = [old]
-    page.route("**/api/v1/benches", lambda route: route.fulfill(json=[old]))
-    page.route("**/api/v1/benches/sim", lambda route: route.fulfill(json=shown[0]))
-    to(page, there, "benches")
-    page.get_by_role("button", name=_RESET).click()
-    asked = page.get_by_role("alertdialog")
+    asked = _ask(page, there, old, lambda: shown[0])
     asked.get_by_role("button", name="It stands still: reset").click()
     expect(page.get_by_role("button", name="Looking at the speed …")).to_be_disabled()
     shown[0] = new
