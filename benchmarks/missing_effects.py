@@ -1,12 +1,12 @@
-"""The diagnosis in use and the one that is to follow it, on the same cases, side by side.
+"""The diagnosis on cases with known answers: right names, reliability, intervals, models given back, time.
 
     python -m benchmarks.missing_effects own                 # a turning mass by other formulas
     python -m benchmarks.missing_effects real --data DIR     # drives of others, docs/reference/real-data.md
     python -m benchmarks.missing_effects blind [--every 20]  # every 20th case of the blind set's plants
 
-`own` and `real` ask from four bases each. `--new` leaves the one in use out. A line has case, base, truth,
-and of each way: right or wrong, names with confidence, the largest gap left, processor time in seconds.
-Ctrl-C ends a run with the figures of what was asked.
+`own` and `real` ask from four bases each. A line has case, base, truth, right or wrong, names with
+confidence, the largest gap left, processor time in seconds. Ctrl-C ends a run with the figures of what was
+asked.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import argparse
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import pairwise
@@ -26,7 +26,6 @@ import numpy as np
 
 from benchmarks.real_data.__main__ import DATA_SETS, missing
 from hil.analysis.diagnosis import diagnose
-from hil.analysis.missing_effects import explain_gap
 from hil.core.errors import HilError
 from hil.core.model import Model, load_model
 from hil.core.recording import Recording, read_recording
@@ -42,7 +41,6 @@ from tests.hil.analysis.missing_effects.turning_mass import base, recording
 _SURE = 0.9
 _CONFIDENCES = (0.0, 0.5, 0.7, 0.9, 0.97, 1.01)
 _TWO_SIDED_95 = 1.96
-_MEAN_S = 4e-3  # over which gaps are means
 #: Counted in the blind set alone: other bases have wrong numbers on purpose, a drive's readings are rounded.
 _ASIDE = ("parameter_mismatch", "sensor_quantization")
 #: Groups of the blind set in which no name of the registry is right.
@@ -76,7 +74,7 @@ class Case:
 
 @dataclass
 class Tally:
-    """Answers of one way: right or not, and each name that was given, with its confidence.
+    """Answers: right or not, and each name that was given, with its confidence.
 
     `off` are numbers of named effects by their distance from the truth in standard errors, `given_back` gaps
     of the model given back, simulated from the first samples, over those in the answer.
@@ -88,13 +86,13 @@ class Tally:
     named: list[tuple[float, bool]] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
 
-    def line(self, who: str) -> str:
+    def line(self) -> str:
         """The figures."""
         wrong = sum(c >= 0.5 and not ok for c, ok in self.named)
         sure = [ok for c, ok in self.named if c >= _SURE]
         middle, high = np.quantile(self.seconds, (0.5, 0.95))
         return (
-            f"{who}: right {sum(self.right)} of {len(self.right)}; wrong names at 0.5 and more: {wrong}; "
+            f"right {sum(self.right)} of {len(self.right)}; wrong names at 0.5 and more: {wrong}; "
             f"of {len(sure)} names at 0.9 and more {sum(sure)} right; "
             f"{middle:.1f} s median, {high:.1f} s 95th"
         )
@@ -122,7 +120,7 @@ class Tally:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print a line for each case and the figures of both; 2 where no case is there."""
+    """Print a line for each case and the figures; 2 where no case is there."""
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks.missing_effects",
         description=__doc__,
@@ -134,46 +132,36 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--part", default="", help="only this group of the blind set")
     parser.add_argument("--every", type=int, default=20, help="of the blind set's cases")
     parser.add_argument("--seed", type=int, default=11, help="of the blind set")
-    parser.add_argument("--new", action="store_true", help="only the one that is to follow")
     options = parser.parse_intermixed_args(arguments)
     unknown = [name for name in options.names if options.group == "real" and name not in DATA_SETS]
     if unknown:
         parser.error(f"no data set {unknown[0]}; there are {', '.join(DATA_SETS)} (--data: where they are)")
-    ways = {"old": _old, "new": _new}
-    if options.new:
-        del ways["old"]
-    tallies = {who: Tally() for who in ways}
+    tally = Tally()
     try:
         for case in _cases(options):
-            _answered(case, ways, tallies)
+            _asked(case, tally)
     except KeyboardInterrupt:
         print("stopped; figures of what was asked so far", file=sys.stderr)
-    if not next(iter(tallies.values())).right:
+    if not tally.right:
         print("no case is there", file=sys.stderr)
         return 2
-    for who, tally in tallies.items():
-        print(tally.line(who))
-        print("\n".join(tally.calibration()))
+    print(tally.line())
+    print("\n".join(tally.calibration()))
     return 0
 
 
-def _answered(
-    case: Case, ways: Mapping[str, Callable[[Case], dict[str, Any]]], tallies: Mapping[str, Tally]
-) -> None:
-    """Ask each way and print a line."""
-    cells = [f"{case.name:<34}{case.base:<12}{' + '.join(case.truth) or '-':<34}"]
-    for who, way in ways.items():
-        began = time.process_time()
-        try:
-            answer = way(case)
-        except (HilError, ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
-            answer = {"verdict": f"failed ({str(error)[:60]})", "effects": []}
-        took = time.process_time() - began
-        cells.append(_cell(who, case, answer, took, tallies[who]))
-    print(" | ".join(cells), flush=True)
+def _asked(case: Case, tally: Tally) -> None:
+    """Ask, and print a line."""
+    began = time.process_time()
+    try:
+        answer = _answer(case)
+    except (HilError, ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
+        answer = {"verdict": f"failed ({str(error)[:60]})", "effects": []}
+    cell = _cell(case, answer, time.process_time() - began, tally)
+    print(f"{case.name:<42}{case.base:<10}{' + '.join(case.truth) or '-':<34}{cell}", flush=True)
 
 
-def _cell(who: str, case: Case, answer: dict[str, Any], took: float, tally: Tally) -> str:
+def _cell(case: Case, answer: dict[str, Any], took: float, tally: Tally) -> str:
     right = case.right(answer)
     tally.right.append(right)
     tally.seconds.append(took)
@@ -182,7 +170,7 @@ def _cell(who: str, case: Case, answer: dict[str, Any], took: float, tally: Tall
     named = []
     for effect in answer["effects"]:
         label = _label(effect)
-        alike = effect.get("class", [])
+        alike = _alike(effect)
         named.append(f"{'~'.join([label, *alike])} {effect['confidence']:.2f}")
         if case.base == "blind" or effect["id"] not in _ASIDE:
             tally.named.append(
@@ -192,7 +180,7 @@ def _cell(who: str, case: Case, answer: dict[str, Any], took: float, tally: Tall
     left = max((100.0 * float(gap["after"]) for gap in gaps.values()), default=float("nan"))
     text = " + ".join(named) or str(answer["verdict"])
     reached = f", {answer['official']}" if answer.get("official") else ""
-    return f"{who} {'right' if right else 'WRONG'} {text}, {left:.2g} % left, {took:.1f} s{reached}"
+    return f"{'right' if right else 'WRONG'} {text}, {left:.2g} % left, {took:.1f} s{reached}"
 
 
 def _label(effect: dict[str, Any]) -> str:
@@ -200,19 +188,20 @@ def _label(effect: dict[str, Any]) -> str:
     return _SAME.get(label, label)
 
 
-def _old(case: Case) -> dict[str, Any]:
-    return diagnose(case.model, case.recordings, case.holdout).as_json()
+def _alike(effect: dict[str, Any]) -> list[str]:
+    """Names that the data cannot tell from an effect's."""
+    return str(effect["class"]).split(" or ")[1:] if "class" in effect else []
 
 
-def _new(case: Case) -> dict[str, Any]:
-    found = explain_gap(case.model, case.recordings, case.holdout)
-    gaps = found.holdout_gap or found.gap
+def _answer(case: Case) -> dict[str, Any]:
+    found = diagnose(case.model, case.recordings, case.holdout)
+    gaps = found.holdout_after or found.gap_after
     try:
         back = _gaps(found.model, case.holdout or case.recordings, tuple(gaps))
     except HilError:  # too stiff to be simulated as users do it
         back = dict.fromkeys(gaps, float("inf"))
     return found.as_json() | {
-        "given_back": [back[name] / gaps[name].after for name in gaps],
+        "given_back": [back[name] / gaps[name].gap for name in gaps],
         "official": case.official(found.model),
     }
 
@@ -220,16 +209,10 @@ def _new(case: Case) -> dict[str, Any]:
 def _gaps(model: Model, recordings: Sequence[Recording], channels: Sequence[str]) -> dict[str, float]:
     """What a model leaves of each channel, simulated as anyone does it, of the channel's deviation."""
     shown = [replay(model, one) for one in recordings]
-
-    def means(one: Recording, name: str) -> np.ndarray:
-        block = max(1, round(_MEAN_S / one.sample_time_s))
-        count = len(one[name]) // block
-        return np.asarray(one[name][: count * block].reshape(count, block).mean(axis=1))
-
     found = {}
     for name in channels:
-        measured = np.concatenate([means(one, name) for one in recordings])
-        error = measured - np.concatenate([means(one, name) for one in shown])
+        measured = np.concatenate([one[name] for one in recordings])
+        error = measured - np.concatenate([one[name] for one in shown])
         found[name] = float(np.sqrt(np.mean(error**2)) / np.std(measured))
     return found
 
@@ -247,9 +230,7 @@ def _exactly(truth: Sequence[str], beside: Sequence[str] = ()) -> Callable[[dict
     """The names alone, numbers, rounding and what may stand beside apart; where there is none, no name."""
 
     def right(answer: dict[str, Any]) -> bool:
-        named = [
-            {_label(e), *e.get("class", [])} for e in answer["effects"] if e["id"] != "parameter_mismatch"
-        ]
+        named = [{_label(e), *_alike(e)} for e in answer["effects"] if e["id"] != "parameter_mismatch"]
         return _holds([one for one in named if not one & {*beside}], truth)
 
     return right
@@ -342,7 +323,7 @@ def _blind(options: argparse.Namespace) -> Iterator[Case]:
             truth: Sequence[str] = truth,
         ) -> bool:
             """As the set asks; a class that holds what is hidden counts where a name is asked for."""
-            named = [{_label(e), *e.get("class", [])} for e in found["effects"]]
+            named = [{_label(e), *_alike(e)} for e in found["effects"]]
             asks = spec.group not in _NO_NAME and not spec.subject.startswith("none")
             return judged(found).right or (asks and _holds(named, truth))
 

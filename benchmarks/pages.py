@@ -20,7 +20,6 @@ PAGES = {
     "replay": _SPEED,
     "plant": _BENCHMARKS,
     "many_models": _BENCHMARKS,
-    "least_squares": _BENCHMARKS,
     "virtual_time": _BENCHMARKS,
     "check": _BENCHMARKS,
     "reports": _BENCHMARKS,

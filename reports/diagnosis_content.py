@@ -23,7 +23,6 @@ from reports import labels
 from reports.diagnosis_figures import WINDOW_S, GapBars, GapRow, overlay_figures, shown_overlay
 from reports.diagnosis_names import (
     alternatives_table,
-    considered_table,
     effects_table,
     effects_text,
     names_of,
@@ -152,12 +151,6 @@ def parts(found: Diagnosis) -> list[Part]:
             if found.consequences
             else why_no_step(found.model),
             _if_any(_consequences(found)),
-        ),
-        Part(
-            "considered",
-            "Considered and rejected",
-            "Expected drop: of the squared error in noise variances, by the linearised score.",
-            _if_any(considered_table(found)),
         ),
         Part("alternatives", "Alternative explanations", "", _if_any(alternatives_table(found))),
     ]

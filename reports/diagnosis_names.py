@@ -1,33 +1,22 @@
-"""What the report of a diagnosis says of names: those given, those rejected, those as likely."""
+"""What the report of a diagnosis says of names: those given, and those as likely."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from hil.analysis.diagnosis import BOOTSTRAP_DRAWS, Considered, Diagnosis, NamedEffect
+from hil.analysis.diagnosis import Diagnosis, NamedEffect
 from hil.core.effects import EFFECTS
 from reports import labels
 from reports.labels import channel_label, parameter_title, with_titles
 from reports.parts import Table
 
-_MOST_CONSIDERED = 20
-_BEYOND_DOUBT = 1e6  # noise variances
-
 
 def effects_text(found: Diagnosis) -> str:
-    """What each named effect is, and against what chance gave it stands."""
+    """What each named effect is."""
     if not found.effects:
         return "None."
     effects = [EFFECTS[id_] for id_ in dict.fromkeys(e.use.id for e in found.effects)]
-    text = " ".join(f"{e.title}: {e.summary} Known by: {_lowered(e.signature)}" for e in effects)
-    drops = [e.drop for e in found.effects if e.drop is not None]
-    if not drops or found.by_chance is None:
-        return text
-    chance = labels.number(float(f"{found.by_chance:.2g}"), significant=2)
-    return (
-        f"{text} Evidence: each named effect reduces the squared error by {_evidence(min(drops))} noise "
-        f"variances or more; false-alarm level {chance}, the largest of {BOOTSTRAP_DRAWS} noise draws."
-    )
+    return " ".join(f"{e.title}: {e.summary} Known by: {_lowered(e.signature)}" for e in effects)
 
 
 def names_of(effect: NamedEffect) -> str:
@@ -76,33 +65,6 @@ def _place(effect: NamedEffect) -> str:
     low, high = effect.where.band_hz
     channels = ", ".join(channel_label(c).text.lower() for c in effect.where.channels)
     return f"{channels}; {low:g}-{high:g} Hz; {effect.where.condition}"
-
-
-def considered_table(found: Diagnosis) -> Table:
-    """What was looked at and not named, the likeliest first; one line for each reason."""
-    alike: dict[str, list[Considered]] = {}
-    for c in found.considered[:_MOST_CONSIDERED]:
-        alike.setdefault(c.reason, []).append(c)
-    rows = tuple(
-        (
-            ", ".join(EFFECTS[c.id].title + (f" ({with_titles(c.about)})" if c.about else "") for c in group),
-            _from_to([_evidence(c.score) for c in group]),
-            _from_to([labels.factor(c.left) for c in group]),
-            reason,
-        )
-        for reason, group in alike.items()
-    )
-    return Table(("effect", "expected drop", "gap left / noise", "reason"), rows, 1, 3)
-
-
-def _from_to(texts: list[str]) -> str:
-    """The first and the last of an ordered list, once if they are the same."""
-    return texts[0] if texts[0] == texts[-1] else f"{texts[0]} to {texts[-1]}"
-
-
-def _evidence(drop: float) -> str:
-    """A drop in noise variances; beyond what anybody would doubt it says that alone."""
-    return f">{labels.THIN}10⁶" if drop >= _BEYOND_DOUBT else labels.number(drop, significant=2)
 
 
 def alternatives_table(found: Diagnosis) -> Table:

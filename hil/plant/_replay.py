@@ -17,7 +17,7 @@ from hil.plant import _recorded, kernel, slots
 from hil.plant._batch_simulation import simulate_many
 from hil.plant._functions import respond_many
 from hil.plant._stability import LONGEST_STEP_S, refuse_divergence, refuse_too_stiff
-from hil.plant.sensors import STEP, measured, sensor_of
+from hil.plant.sensors import GAIN, OFFSET, STEP, measured, sensor_of
 from hil.plant.sides import LUMPED, form_of
 
 Array = npt.NDArray[np.float64]
@@ -236,6 +236,9 @@ def settled_start(
     count = min(len(torque_nm), round(_recorded.SECONDS / dt))
     torque, measured = torque_nm[:count], measured[:count]
     read, errors = (np.array(one) for one in zip(*map(_recorded.beginning, measured.T), strict=True))
+    sensors = np.stack([sensor_of(model, name) for name in OUTPUTS])
+    gain = np.where(sensors[:, GAIN] == 0.0, 1.0, sensors[:, GAIN])  # a channel that shows nothing
+    read, errors = (read - sensors[:, OFFSET]) / gain, errors / np.abs(gain)
     ratio = gear_ratio_of(model)
     if ratio:
         followed = np.array([ratio, 1.0 / ratio, np.nan])

@@ -4,27 +4,23 @@ from hil.analysis.diagnosis._diagnose import diagnose
 from hil.analysis.diagnosis.data.gap import BANDS_HZ, CONDITIONS, ChannelGap, GapMap
 from hil.analysis.diagnosis.data.sanity import examine
 from hil.analysis.diagnosis.data.thresholds import LEAST_SAMPLES
-from hil.analysis.diagnosis.search.thresholds import BOOTSTRAP_DRAWS
-from hil.analysis.diagnosis.tell.consequences import why_no_step
-from hil.analysis.diagnosis.tell.result import (
-    INTERRUPTED,
+from hil.analysis.diagnosis.findings.consequences import why_no_step
+from hil.analysis.diagnosis.findings.result import (
     Alternative,
-    Considered,
     Diagnosis,
     NamedEffect,
     Overlay,
 )
-from hil.analysis.diagnosis.tell.words import Where
+from hil.analysis.diagnosis.findings.words import Where
+from hil.analysis.missing_effects import INTERRUPTED
 
 __all__ = [
     "BANDS_HZ",
-    "BOOTSTRAP_DRAWS",
     "CONDITIONS",
     "INTERRUPTED",
     "LEAST_SAMPLES",
     "Alternative",
     "ChannelGap",
-    "Considered",
     "Diagnosis",
     "GapMap",
     "NamedEffect",

@@ -7,12 +7,10 @@ from types import ModuleType
 from typing import Any, get_type_hints
 
 from hil.analysis.diagnosis.data import thresholds as of_data
-from hil.analysis.diagnosis.fit import thresholds as of_fit
-from hil.analysis.diagnosis.search import thresholds as of_search
-from hil.analysis.diagnosis.tell import thresholds as of_tell
+from hil.analysis.diagnosis.findings import thresholds as of_findings
 from hil.analysis.diagnosis.threshold import CHECKS, Means
 
-_ROOMS = {"data": of_data, "fit": of_fit, "search": of_search, "tell": of_tell}
+_ROOMS = {"data": of_data, "findings": of_findings}
 _HEAD = """# Thresholds of the diagnosis
 
 Made by `.venv/bin/python -m hil.analysis.diagnosis.threshold_page` from `thresholds.py` of each room; a test

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -9,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.missing_effects._allowance import INTERRUPTED, OUT_OF_TIME, Allowance, OutOfTimeError
 from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._fit import Point, point_at, with_better_starts
 from hil.analysis.missing_effects._hypothesis import Hypothesis
@@ -19,7 +21,7 @@ from hil.analysis.missing_effects._problem import Problem, problem_of
 from hil.analysis.missing_effects._search import search
 from hil.analysis.missing_effects._series import series_of
 from hil.analysis.missing_effects._spectrum import white
-from hil.analysis.missing_effects._verdict import Judged, judged
+from hil.analysis.missing_effects._verdict import Judged, as_far_as_known, judged
 from hil.core.channels import OUTPUTS
 from hil.core.model import Model
 from hil.core.recording import Recording
@@ -34,15 +36,21 @@ def explain_gap(
     holdout: Sequence[Recording] = (),
     *,
     noise: Mapping[str, float] | None = None,
+    at_most_s: float = math.inf,
     show: Callable[[str], None] = lambda text: None,
 ) -> Outcome:
     """Say which effects a model lacks to explain recordings, and how sure that is.
 
     Args:
-        model: a chain; its numbers are a prior, so that any base of the same kind gets the same answer.
+        model: a chain; its numbers are a prior, so that any base of the same kind gets the same answer. Or
+            transfer functions, to which only effects of torque path and sensors can be added.
         holdout: recordings that no fit sees: what is left is judged by them.
         noise: standard deviation of a sample that a channel's sensor is known to have, by channel.
+        at_most_s: processor time of the search, s.
         show: called with what is being fitted.
+
+    An interrupt (KeyboardInterrupt) ends the search as its time does; before anything is known, and while
+    it is stated, it is raised.
 
     Raises:
         BadInputError: the recordings have none of the model's channels, or are too short.
@@ -51,7 +59,10 @@ def explain_gap(
     series = series_of(model, recordings)
     levels = proven_noise(series, noise or {})
     problem = problem_of(model, series, levels, white(levels, series[0].rate_hz))
-    done = search(problem, show)
+    problem = replace(problem, allowance=Allowance(at_most_s))
+    done = Candidates(problem)
+    unfinished = _searched(done, show)
+    problem.allowance.lift()
     unseen = problem
     if holdout:
         held = series_of(model, holdout)
@@ -60,18 +71,36 @@ def explain_gap(
     shown = _Shown(problem, unseen, done)
     fitted = tuple(Replay(one) for one in problem.series)
     held_out = tuple(Replay(one) for one in unseen.series) if holdout else ()
-    return judged(
-        Judged(
-            model,
-            done,
-            shown.left,
-            lambda given: (shown.gaps(fitted, given), shown.gaps(held_out, given) if holdout else {}),
-            fitted,
-            held_out,
-        ),
-        tuple(note for one in series for note in one.notes),
-        time.perf_counter() - began,
+    of = Judged(
+        model,
+        done,
+        shown.left,
+        lambda given: (shown.gaps(fitted, given), shown.gaps(held_out, given) if holdout else {}),
+        fitted,
+        held_out,
     )
+    notes = tuple(note for one in series for note in one.notes)
+    found = as_far_as_known(of, notes, unfinished) if unfinished else judged(of, notes)
+    return replace(found, seconds=time.perf_counter() - began)
+
+
+def _searched(done: Candidates, show: Callable[[str], None]) -> str:
+    """Search, and say why that ended before it was through, if it did."""
+    try:
+        search(done, show)
+    except KeyboardInterrupt:
+        if not done.found:
+            raise
+        return INTERRUPTED
+    except OutOfTimeError:
+        done.problem.allowance.lift()
+        if not done.found:  # nothing was fitted yet: the model as it came
+            base = Hypothesis(done.problem.model, dict(done.problem.model.parameters))
+            started = with_better_starts(done.problem, point_at(done.problem, base))
+            done.found[()] = done.judged(started)
+            done.go_on_from(done.found[()])
+        return OUT_OF_TIME
+    return ""
 
 
 @dataclass

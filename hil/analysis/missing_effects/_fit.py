@@ -125,6 +125,8 @@ def fit(
     """
     hypothesis = point.hypothesis
     coordinates = [one for one in problem.coordinates(hypothesis) if one.term >= 0 or one.name not in held]
+    if not coordinates:
+        return with_better_starts(problem, point)
     round_ = _Round(problem, hypothesis, point.starts, coordinates)
     found = least_squares(round_, *bounds_of(coordinates, 1.0), evaluations, _differences(hypothesis))
     hypothesis = hypothesis.moved(coordinates, found)

@@ -91,6 +91,7 @@ class Outcome:
     what stays. `noise` (3,) is the proven standard deviation of one sample, NaN where a channel was not
     recorded. `as_likely` are models drawn from what the fit knows of its numbers. `steadied` is a drag in
     the model without a name: it keeps it from drifting where recordings do not excite what would name it.
+    `unfinished` says why the search ended before it was through, if it did: names are candidates then.
     """
 
     verdict: Verdict
@@ -110,6 +111,7 @@ class Outcome:
     fitted: tuple[Replay, ...]
     held_out: tuple[Replay, ...]
     steadied: EffectUse | None = None
+    unfinished: str = ""
 
     def as_json(self) -> dict[str, Any]:
         """The content of `diagnosis.json`."""

@@ -9,11 +9,12 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.missing_effects._allowance import UNBOUNDED, Allowance
 from hil.analysis.missing_effects._hypothesis import Coordinate, Hypothesis
 from hil.analysis.missing_effects._series import Series
 from hil.analysis.missing_effects._shown import Shown
 from hil.analysis.missing_effects._spectrum import Powers, Spectrum, powers_of
-from hil.core.model import Model
+from hil.core.model import Model, TransferFunction
 from hil.core.runtime.thread_map import map_on_threads
 from hil.plant import begins_of, gear_ratio_of, simulate_many, turns
 
@@ -32,6 +33,7 @@ class Problem:
 
     `noise` (3,) is a standard deviation, `signal` (3,) a mean square of each channel, `spectrum` is what
     errors are weighed by; `scales` are sizes of numbers that may be zero, `held` numbers without effect.
+    Every simulation asks `allowance` first.
     """
 
     model: Model
@@ -43,6 +45,7 @@ class Problem:
     held: frozenset[str] = frozenset()
     angles: tuple[Array, ...] = ()
     shown: Shown = field(default_factory=Shown, repr=False, compare=False)
+    allowance: Allowance = UNBOUNDED
 
     def weighed_by(self, spectrum: Spectrum) -> Problem:
         """The same, errors weighed by another spectrum."""
@@ -53,6 +56,11 @@ class Problem:
         return [
             one for one in hypothesis.coordinates(self.scales) if one.term >= 0 or one.name not in self.held
         ]
+
+    @property
+    def functions(self) -> dict[str, TransferFunction] | None:
+        """Of a transfer-function model; None of a chain."""
+        return self.model.transfer_functions or None
 
     @property
     def rate_hz(self) -> float:
@@ -90,7 +98,12 @@ class Problem:
         return [one.first_state(ratio) for one in self.series]
 
     def each(self, function: Callable[[int], _Result]) -> list[_Result]:
-        """A function of each recording's index, side by side on threads."""
+        """A function of each recording's index, side by side on threads.
+
+        Raises:
+            OutOfTimeError: the search has taken what it may.
+        """
+        self.allowance.check()
         return map_on_threads(function, range(len(self.series)))
 
     def simulated(
@@ -105,7 +118,7 @@ class Problem:
         """
         one, angles = self.series[index], self.angles[index]
         slots, sensors = (np.stack([p[i] for p in packed]) for i in range(2))
-        begins = begins_of(slots, starts)
+        begins = starts if self.functions else begins_of(slots, starts)
         keys = [
             (id(one), id(angles) if follows else 0, p.tobytes(), sensor.tobytes(), begin.tobytes())
             for p, sensor, begin, follows in zip(slots, sensors, begins, turns(slots).tolist(), strict=True)
@@ -113,8 +126,9 @@ class Problem:
 
         def simulate(some: npt.NDArray[np.int64]) -> Array:
             shown = simulate_many(
-                slots[some], one.torque, one.dt, begins[some], sensors[some], one.block, angles, one.load
-            )
+                slots[some], one.torque, one.dt, begins[some], sensors[some], one.block, angles, one.load,
+                self.functions,
+            )  # fmt: skip
             return _bounded(shown)
 
         return self.shown.outputs(keys, simulate, (one, angles), keep=keep)
@@ -124,7 +138,9 @@ class Problem:
         one = self.series[index]
         slots, sensors = (part[None] for part in hypothesis.packed())
         angles = self.angles[index]
-        shown = simulate_many(slots, one.torque, one.dt, start[None], sensors, 1, angles, one.load)
+        shown = simulate_many(
+            slots, one.torque, one.dt, start[None], sensors, 1, angles, one.load, self.functions
+        )
         return np.asarray(shown[0])
 
     def errors(self, hypothesis: Hypothesis, starts: Sequence[Array]) -> list[Array]:
@@ -227,7 +243,7 @@ class Problem:
 
 def _bounded(values: Array) -> Array:
     """Values as they are, but for what runs away."""
-    if np.max(np.abs(values)) < _FAR:  # not NaN either
+    if not values.size or np.max(np.abs(values)) < _FAR:  # not NaN either
         return values
     return np.asarray(np.clip(np.nan_to_num(values, nan=_FAR), -_FAR, _FAR))
 

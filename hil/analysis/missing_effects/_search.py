@@ -38,13 +38,17 @@ _REACHES = (1.0, 0.25)  # how far another minimum is looked for: as far as usual
 _MOST_NAMES = 4
 
 
-def search(problem: Problem, show: Callable[[str], None]) -> Candidates:
-    """Fit the numbers alone, then grow and prune sets of effects until noise is left or none pays."""
-    show("numbers alone")
+def search(done: Candidates, show: Callable[[str], None]) -> None:
+    """Fit the numbers alone, then grow and prune sets of effects until noise is left or none pays.
+
+    Args:
+        done: nothing yet; holds what was fitted, also after an exception.
+    """
+    show("fitting the numbers alone")
+    problem = done.problem
     start, *linear = _starts(problem)
     started = with_better_starts(problem, point_at(problem, start))
-    spectrum = started.powers(problem).spectrum(problem.noise)
-    done = Candidates(replace(problem, spectrum=spectrum))
+    done.problem = problem.weighed_by(started.powers(problem).spectrum(problem.noise))
     best = done.fitted(start, None)
     best = done.fitted(best.point.hypothesis, best)
     done.go_on_from(best)
@@ -61,7 +65,6 @@ def search(problem: Problem, show: Callable[[str], None]) -> Candidates:
         done.go_on_from(best)
         if any(EFFECTS[use.id].law.follows for use in best.point.hypothesis.terms):
             best = _with_better_angles(done, best)
-    return done
 
 
 def _without_chance(done: Candidates, grown: Candidate) -> Candidate:
@@ -94,6 +97,8 @@ def _starts(problem: Problem) -> list[Hypothesis]:
     Of a chain with shafts the base's own numbers stay where they are the likelier.
     """
     base = Hypothesis(problem.model, dict(problem.model.parameters))
+    if problem.functions:
+        return [base]
     read = read_numbers(problem.model, problem.series)
     found = [read] if read is not None else structures(problem)
 
@@ -144,7 +149,7 @@ def _among_losses(done: Candidates, grown: Candidate, show: Callable[[str], None
     best = grown
     for promise, *_ in best_by_name(found, 1):
         if promise.label not in grown.names:
-            show(promise.label)
+            show(f"fitting {promise.label}")
             instead = done.fitted(fewer.with_term(promise.use), near)
             best = max(best, _opened(done, instead, show), key=done.score)
     if done.problem.is_noise(best.point.errors):
@@ -153,7 +158,7 @@ def _among_losses(done: Candidates, grown: Candidate, show: Callable[[str], None
     for one in [one for one in done.found.values() if len(one.names) == 1 and one.names != best.names]:
         other, opened = one.point.hypothesis.terms[0], one.point.hypothesis.opened[0]
         if is_loss(other):
-            show(" + ".join([*best.names, *one.names]))
+            show(f"fitting {' + '.join([*best.names, *one.names])}")
             pairs.append(done.fitted(best.point.hypothesis.with_term(other, opened), best, _RIVALS))
     ended = [done.fitted(one.point.hypothesis, one) for one in _best_of_each_name(done, pairs)[:1]]
     return max((best, *ended), key=done.score)
@@ -182,7 +187,7 @@ def _best_of(
     for hypothesis, gain in suggested[:_TRIED]:
         if gain < HALF * min(most, reached):
             break  # others have more before them and more behind them
-        show(" + ".join(hypothesis.names))
+        show(f"fitting {' + '.join(hypothesis.names)}")
         begun.append(done.fitted(hypothesis, best, 1))
         reached = max(reached, begun[-1].log_likelihood - best.log_likelihood)
     rounds = 1
@@ -337,7 +342,7 @@ def _opened_of(done: Candidates, best: Candidate, index: int, show: Callable[[st
         gains = promised_by(problem, linearised(problem, best.point), wider)
         if max(gains) <= done.cost_of_a_number(best):
             continue
-        show(f"{best.names[index]}: {parameter.name}")
+        show(f"fitting {best.names[index]}: {parameter.name}")
         begins = wider[int(np.argmax(gains))]
         if begins.terms[index].values[parameter.name] in aside:
             begins = hypothesis.with_values(index, {}, opened | {parameter.name})

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from hil.analysis.frequency_response import period_samples
 from hil.analysis.missing_effects._spectrum import edges_hz, powers_of
+from hil.analysis.spikes import without_spikes
 from hil.analysis.stretches import excerpts, unbroken
 from hil.core.channels import INPUT, OUTPUTS, WHEEL_ANGLE
 from hil.core.errors import BadInputError
@@ -128,7 +129,7 @@ def _series(model: Model, recording: Recording) -> Series:
     samples = np.full((len(grid), len(OUTPUTS)), np.nan)
     for column, name in enumerate(OUTPUTS):
         if name in recording:
-            samples[:, column] = on_grid(recording[name])
+            samples[:, column] = without_spikes(on_grid(recording[name]), name, dt)[0]
     block = max(1, round(1.0 / (FIT_RATE_HZ * dt)))
     if not even:  # a block without a reading of its own would show what was interpolated
         block = max(block, math.ceil(float(np.quantile(np.diff(time), _USUAL)) / dt))

@@ -58,7 +58,24 @@ class Judged:
     held_out: tuple[Replay, ...]
 
 
-def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
+def as_far_as_known(of: Judged, notes: tuple[str, ...], why: str) -> Outcome:
+    """The outcome of a search that was not through: names are candidates, the model has none of them."""
+    done = of.done
+    alone, candidates = done.found.get((), done.best), list(done.found.values())
+    at = linearised(done.weighed_as(alone, once=True), alone.point)
+    values = done.problem.powers(alone.point.errors, once=True).values(done.problem.noise)
+    weights = _weights(done.problem, candidates, values)
+    numbers, model = numbers_of(at, of.asked), alone.point.hypothesis.model()
+    return Outcome(
+        "unknown", (), tuple(_others(of, alone, candidates, weights)), 1.0, numbers, is_far(numbers, done),
+        *of.gaps(model), model,
+        curves_of(alone.point.hypothesis, done.problem.series), notes, 0.0,
+        done.problem.noise * np.sqrt(done.problem.series[0].block), (), of.fitted, of.held_out,
+        unfinished=why,
+    )  # fmt: skip
+
+
+def judged(of: Judged, notes: tuple[str, ...]) -> Outcome:
     """The outcome of a search."""
     done = of.done
     likeliest = done.best
@@ -95,7 +112,7 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     return Outcome(
         verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), something_else, numbers, far,
         *of.gaps(model), model,
-        curves_of(best.point.hypothesis, done.problem.series), notes, seconds,
+        curves_of(best.point.hypothesis, done.problem.series), notes, 0.0,
         done.problem.noise * np.sqrt(done.problem.series[0].block), at.drawn(_DRAWN), of.fitted, of.held_out,
         steadied,
     )  # fmt: skip

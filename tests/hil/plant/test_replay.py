@@ -336,6 +336,27 @@ def test_replay_gives_back_a_recording_of_the_same_model():
         np.testing.assert_allclose(got[name], truth[name], rtol=1e-12)
 
 
+@pytest.mark.parametrize(
+    "sensor",
+    [
+        EffectUse("sensor_offset", {"channel": "shaft_torque_nm", "offset": 20.0}),
+        EffectUse("sensor_offset", {"channel": "wheel_speed_rad_s", "offset": -2.0}),
+        EffectUse("sensor_gain", {"channel": "motor_speed_rad_s", "gain": 0.9}),
+    ],
+    ids=lambda use: f"{use.id} of {use.values['channel']}",
+)
+def test_a_replay_begins_at_what_its_sensors_say_is_true(sensor):
+    """A sensor that is off shows another start, and a twist that is not there would ring."""
+    model = THREE.with_effects(sensor)
+    truth = simulate(model, step(), DT, Start(100.0, 100.0 / P["gear_ratio"]))
+    rng = np.random.default_rng(1)
+    noise = {name: 1e-3 * np.std(values) * rng.normal(size=3000) for name, values in truth.items()}
+    noisy = {name: values + noise[name] for name, values in truth.items()}
+    got = replay(model, recording(np.arange(3000) * DT, step(), **noisy))
+    for name in ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm"):
+        assert np.sqrt(np.mean((got[name] - truth[name]) ** 2)) < 1e-3 * np.std(truth[name])
+
+
 @pytest.mark.parametrize("channel", ["motor_speed_rad_s", "wheel_speed_rad_s"])
 @pytest.mark.parametrize("model", [THREE, load_model(BENCHES / "paper_functions.toml")], ids=lambda m: m.kind)
 def test_a_speed_that_was_not_recorded_starts_with_the_other_over_the_gear(model, channel):

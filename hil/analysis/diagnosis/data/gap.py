@@ -61,16 +61,13 @@ def channel_gaps(traces: Sequence[Trace], floor: Array, simulated: Sequence[Arra
     gaps = {}
     for column, channel in enumerate(OUTPUTS):
         pairs = [
-            (t.samples[t.judged_samples, column], s[t.judged_samples, column])
+            (t.samples[:, column], s[:, column])
             for t, s in zip(traces, simulated, strict=True)
             if t.has[column]
         ]
         if not pairs:
             continue
         measured = np.concatenate([m for m, _ in pairs])
-        if not len(measured):  # nothing of it is judged
-            gaps[channel] = ChannelGap(np.nan, np.nan)
-            continue
         error = measured - np.concatenate([s for _, s in pairs])
         spread = max(float(np.std(measured)), 1e-12)
         rms = float(np.sqrt(np.mean(error**2)))
@@ -83,12 +80,10 @@ def gap_map(traces: Sequence[Trace], noise: Array, simulated: Sequence[Array]) -
     bands = np.full((len(traces), 3, len(BANDS_HZ)), np.nan)
     sums, counts = np.zeros((2, len(CONDITIONS), 3))
     for row, (trace, values) in enumerate(zip(traces, simulated, strict=True)):
-        counted = trace.judged_samples
-        error = np.where(counted[:, None], (trace.samples - values) / noise, 0.0)
-        masks = conditions_of(trace.samples, trace.torque, trace.dt) * counted
-        whole = np.sqrt(len(counted) / max(int(np.count_nonzero(counted)), 1))
+        error = (trace.samples - values) / noise
+        masks = conditions_of(trace.samples, trace.torque, trace.dt)
         for column in np.flatnonzero(trace.has):
-            bands[row, column] = whole * _band_ratios(error[:, column], trace.dt)
+            bands[row, column] = _band_ratios(error[:, column], trace.dt)
             sums[:, column] += masks @ error[:, column] ** 2
             counts[:, column] += masks.sum(axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):

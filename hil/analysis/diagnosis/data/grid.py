@@ -2,47 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis.data.thresholds import (
-    COARSE_GRID,
-    LEAST_GRID,
-    LEAST_LEVELS,
-    ON_GRID,
-    ROUNDING_ALIKE,
-)
-from hil.analysis.diagnosis.data.trace import Trace
-from hil.core.channels import OUTPUTS
-from hil.core.model import EffectUse
+from hil.analysis.diagnosis.data.thresholds import LEAST_LEVELS, ON_GRID
 
 Array = npt.NDArray[np.float64]
-
-
-def grids(traces: Sequence[Trace], noise: Array) -> list[EffectUse]:
-    """A `sensor_quantization` for each channel with a grid coarse enough to matter."""
-    found = []
-    for column, channel in enumerate(OUTPUTS):
-        values = [t.samples[:, column] for t in traces if t.has[column] and not t.notes]
-        if not values:
-            continue
-        step = grid_step(np.concatenate(values))
-        if step > LEAST_GRID * float(noise[column]):
-            found.append(EffectUse("sensor_quantization", {"channel": channel, "step": step}))
-    return found
-
-
-def coarse_noise(noise: Array, rounded: list[EffectUse]) -> Array:
-    """Noise levels to weigh by: rounding errors of neighbouring samples are alike and do not average out."""
-    levels = noise.copy()
-    for use in rounded:
-        column = OUTPUTS.index(str(use.values["channel"]))
-        step = float(use.values["step"])
-        if step > COARSE_GRID * levels[column]:
-            levels[column] = max(levels[column], ROUNDING_ALIKE * step / np.sqrt(12.0))
-    return levels
 
 
 def grid_step(values: Array) -> float:

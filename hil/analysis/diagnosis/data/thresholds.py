@@ -7,15 +7,6 @@ from typing import Annotated
 from hil.analysis import stretches
 from hil.analysis.diagnosis.threshold import Means
 
-SPIKE_RANGES: Annotated[
-    float,
-    Means(
-        "of the range of 98 % of the readings", "a reading that jumps further and back is a glitch", "trace"
-    ),
-] = 3.0
-SPIKES: Annotated[
-    int, Means("readings", "of a channel that are left out as glitches; more are what it does", "trace")
-] = 20
 CLIPPED_SHARE: Annotated[
     float, Means("share of samples", "from this share at its end on a channel may be clipped", "bad_input")
 ] = 0.03
@@ -82,57 +73,9 @@ SPEEDS_UP: Annotated[
 ] = 0.05
 
 SLOW_UNPROVEN: Annotated[
-    float, Means("of the proven noise", "an error up to it may be called noise that is slow", "proven")
+    float, Means("of the proven noise", "an error up to it may be called noise that is slow", "verdict")
 ] = 1.2
-REST_STILL: Annotated[float, Means("of the largest speed", "an axle slower than this rests", "proven")] = 0.01
-REST_AFTER_S: Annotated[float, Means("s", "of rest for vibration to die away in", "proven")] = 0.5
-REST_LEAST_S: Annotated[float, Means("s", "of rest that then tell a channel's noise", "proven")] = 1.0
-REPEATED: Annotated[
-    float, Means("of the largest torque", "requests that differ by less are one request", "proven")
-] = 1e-3
 
-SEGMENT_S: Annotated[
-    float, Means("s", "segments over which physics comes and goes and noise does not", "coherence")
-] = 2.0
-SLOW_LINES: Annotated[
-    int, Means("frequencies", "slower than a segment, with the window's leakage", "coherence")
-] = 2
-RED: Annotated[
-    float,
-    Means(
-        "times the power next to them",
-        "how far noise may rise towards the slow frequencies; more is drift",
-        "coherence",
-    ),
-] = 20.0
-LEAST_SEGMENTS: Annotated[
-    int, Means("segments", "fewer give no coherence: segments are made shorter", "coherence")
-] = 12
-FED_BACK: Annotated[
-    float,
-    Means(
-        "of the power shown", "an error that only the request explains may be physics by so much", "coherence"
-    ),
-] = 0.1
-LOOP_BAND: Annotated[
-    float,
-    Means("of the highest frequency", "above it a request that follows a channel is a loop", "coherence"),
-] = 0.4
-LOOP_COHERENT: Annotated[
-    float, Means("coherence", "there, from which on a channel is fed back", "coherence")
-] = 0.2
-LOOP_NOISE: Annotated[
-    float, Means("of an error's power", "may be the noise that went round the loop", "coherence")
-] = 0.15
-KEPT: Annotated[
-    float, Means("of the largest", "regressors below it say the same as others and count once", "coherence")
-] = 1e-6
-NEIGHBOURS: Annotated[
-    float, Means("frequencies", "of a Hann window count as one in the variance", "coherence")
-] = 1.9
-SEGMENTS_ALIKE: Annotated[
-    float, Means("correlation", "of neighbouring Hann segments at half overlap", "coherence")
-] = 1.0 / 6.0
 
 STANDSTILL_SHARE: Annotated[
     float, Means("of the largest speed", "below it the axle is near standstill", "gap")
@@ -143,25 +86,12 @@ REVERSAL_S: Annotated[
 LARGE_TORQUE: Annotated[float, Means("of the largest torque", "above it torque is large", "gap")] = 0.6
 HIGH_SPEED: Annotated[float, Means("of the largest speed", "above it speed is high", "gap")] = 0.6
 
-LEAST_GRID: Annotated[float, Means("of the noise", "a finer grid explains nothing", "grid")] = 0.2
-COARSE_GRID: Annotated[float, Means("noise levels", "a finer grid is dithered by the noise", "grid")] = 1.0
-ROUNDING_ALIKE: Annotated[
-    float, Means("root of the samples in a block", "so many neighbouring rounding errors are alike", "grid")
-] = 2.0
 ON_GRID: Annotated[float, Means("mean phasor", "from it on readings lie on a grid", "grid")] = 0.98
 LEAST_LEVELS: Annotated[int, Means("levels", "fewer show no grid", "grid")] = 4
 
 FLOOR_BAND: Annotated[
     tuple[float, float], Means("of the sample rate", "above all modes: what is left there is noise", "noise")
 ] = (0.25, 0.48)
-CANCELLING: Annotated[
-    float,
-    Means(
-        "of the noise per sample",
-        "below it block means show that errors of neighbouring samples cancel: a differentiated position",
-        "noise",
-    ),
-] = 0.75
 
 INVERTED: Annotated[float, Means("correlation", "below it a channel is inverted", "bad_input")] = -0.5
 RELATED: Annotated[
@@ -260,12 +190,6 @@ LEAST_DURATION_S: Annotated[
         "s", "a shorter recording is refused: fewer than some tens of block means say nothing", "bad_input"
     ),
 ] = stretches.LEAST_DURATION_S
-MOST_SAMPLES: Annotated[
-    int, Means("samples", "of a longer stretch excerpts are read: memory and time are bounded", "bad_input")
-] = stretches.MOST_SAMPLES
-EXCERPTS: Annotated[int, Means("stretches", "so many stand for a very long one", "bad_input")] = (
-    stretches.EXCERPTS
-)
 FIRST_STAMPS: Annotated[
     int, Means("samples", "a straight line through the stamps begins with these", "trace")
 ] = 50
@@ -287,13 +211,6 @@ LITTLE_TORQUE: Annotated[
 GAP_SAMPLES: Annotated[float, Means("samples", "a longer pause is a gap", "bad_input")] = (
     stretches.GAP_SAMPLES
 )
-COARSE_SAMPLE_S: Annotated[
-    float,
-    Means("s", "with longer ones torque between samples is not known, and a note says so", "trace"),
-] = 0.004
-STEPPED: Annotated[
-    float, Means("of the rms change from sample to sample", "a smaller median: the request is steps", "trace")
-] = 0.03
 SLOWEST_SAMPLE_S: Annotated[float, Means("s", "a recording sampled more slowly is refused", "bad_input")] = (
     0.02
 )

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis.data.spikes import without_spikes
 from hil.analysis.diagnosis.data.thresholds import (
     FIRST_STAMPS,
     FIT_RATE_HZ,
@@ -20,6 +19,7 @@ from hil.analysis.diagnosis.data.thresholds import (
     START_SAMPLES,
     UNEVEN_SHARE,
 )
+from hil.analysis.spikes import without_spikes
 from hil.core.channels import CHANNELS, INPUT, OUTPUTS, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import closest
@@ -37,9 +37,8 @@ class Trace:
     `measured` is blocks x 3 in the order of `OUTPUTS` (NaN where a channel is missing), each the mean of
     `block` samples; `samples` is the same at full rate; `start` is motor speed, wheel speed (rad/s) and
     shaft torque (N m) at first, means of `start_samples`, NaN where not measured. `source` is the file, for
-    messages. `judged` says of each block whether errors count there; everywhere if None. `load` is the torque
-    in N m that brakes the wheels at every sample; None where the model takes none. In the first `lead`
-    samples of a recording that begins in motion errors do not count: torque asked for before acts there.
+    messages. `load` is the torque in N m that brakes the wheels at every sample; None where the model takes
+    none.
     """
 
     name: str
@@ -52,9 +51,7 @@ class Trace:
     notes: tuple[str, ...]
     first_wheel_angle_rad: float = 0.0
     source: str = ""
-    judged: Flags | None = None
     load: Array | None = None
-    lead: int = 0
     start_samples: int = START_SAMPLES
 
     def angles(self, gear_ratio: float, sensors: Array | None = None) -> Array:
@@ -72,30 +69,6 @@ class Trace:
     def has(self) -> Flags:
         """Which of the three channels were measured."""
         return np.asarray(np.isfinite(self.measured[0]))
-
-    @property
-    def judged_blocks(self) -> Flags:
-        """Of each block whether errors count there."""
-        judged = np.ones(len(self.measured), bool) if self.judged is None else self.judged.copy()
-        judged[: self.lead_blocks] = False
-        return judged
-
-    @property
-    def lead_blocks(self) -> int:
-        """How many blocks `lead` reaches into."""
-        return -(-self.lead // self.block)
-
-    @property
-    def judged_samples(self) -> Flags:
-        """The same of each sample; what does not fill a block counts as the last block does."""
-        every = np.repeat(self.judged_blocks, self.block)
-        return np.pad(every, (0, len(self.samples) - len(every)), mode="edge")
-
-    @property
-    def block_time_s(self) -> Array:
-        """Time of each block's middle from the start of the recording, s."""
-        middles = np.arange(len(self.measured)) * self.block + 0.5 * (self.block - 1)
-        return np.asarray(middles * self.dt, dtype=float)
 
 
 def trace_of(recording: Recording, name: str = "", load: Array | None = None) -> Trace:

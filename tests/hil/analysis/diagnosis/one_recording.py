@@ -6,12 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hil.analysis.diagnosis.data.noise import noise_levels
 from hil.analysis.diagnosis.data.trace import Trace, trace_of
-from hil.analysis.diagnosis.fit.coordinates import Hypothesis
-from hil.analysis.diagnosis.fit.errors import Errors
-from hil.analysis.diagnosis.fit.fit import Fit
-from hil.analysis.diagnosis.fit.problem import Problem, problem_of
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
@@ -37,19 +32,3 @@ def recorded(*effects: EffectUse, seconds: float = 4.0, seed: int = 1) -> Record
 def one_trace(*effects: EffectUse, seconds: float = 4.0) -> Trace:
     """The same, made ready."""
     return trace_of(recorded(*effects, seconds=seconds))
-
-
-def one_problem(*effects: EffectUse, seconds: float = 4.0) -> Problem:
-    """The same, weighed by its noise."""
-    traces = [one_trace(*effects, seconds=seconds)]
-    return problem_of(traces, noise_levels(traces), BASE["gear_ratio"])
-
-
-def left(total: float, *effects: EffectUse, rows: int = 300) -> Fit:
-    """A fit of `effects` that leaves `total`, spread evenly over `rows` errors."""
-    hypothesis = Hypothesis(MODEL, effects)
-    theta = hypothesis.start()
-    size = len(theta)
-    error = np.full(rows, np.sqrt(total / rows))
-    errors = Errors(error, np.zeros((rows, size)), np.zeros((rows, 3)))
-    return Fit(hypothesis, theta, [np.zeros(3)], total, 0.0, np.eye(size), (errors,))

@@ -12,9 +12,7 @@ import pandas as pd
 import pytest
 
 from hil.analysis.diagnosis import examine
-from hil.analysis.diagnosis.data.noise import noise_levels, usable_noise
 from hil.analysis.diagnosis.data.trace import trace_of
-from hil.analysis.diagnosis.fit.problem import problem_of
 from hil.analysis.stretches import unbroken
 from hil.cli._app import guarded
 from hil.core.errors import BadInputError
@@ -341,20 +339,3 @@ def test_a_flat_torque_rounded_is_no_clip_and_a_clipped_one_is() -> None:
     channels[SHAFT] = np.clip(channels[SHAFT], -top, top)
     with pytest.raises(BadInputError, match="looks clipped"):
         examine(rigid, [rounded(Recording(channels, Path("chirp.csv")), SHAFT, top / 30.0)])
-
-
-def test_rest_is_seen_though_the_torque_is_never_quite_zero() -> None:
-    fed_back = [r for r in recordings(Truth(), 3, short=True) if abs(r[WHEEL][:20].mean()) < 0.05][:1]
-    for recording in fed_back:
-        channels = dict(recording.channels)
-        small = np.random.default_rng(1).normal(
-            0.0, 1e-3 * np.max(np.abs(channels[TORQUE])), len(channels[TORQUE])
-        )
-        channels[TORQUE] = channels[TORQUE] + small
-        channels[MOTOR] = channels[MOTOR] + 3.0  # an offset of one speed hides no rest
-        trace = trace_of(dataclasses.replace(recording, channels=channels))
-        noise = usable_noise(noise_levels([trace]))
-        assert problem_of([trace], noise, BASE["gear_ratio"]).resting == (True,)
-        coarse = noise * np.array([1.0, 50.0, 1.0])  # whose rounding reads zero at many speeds
-        assert problem_of([trace], coarse, BASE["gear_ratio"], floor=noise).resting == (False,)
-    assert fed_back

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from hil.analysis.diagnosis.fit.least_squares import box_step
 from hil.core.model import EffectUse, Model
 from hil.plant import Start, ideal_sensors, pack, simulate, simulate_many
 from tests.hil.analysis.diagnosis.reference_plant import BASE, CHANNELS
@@ -84,20 +81,3 @@ def test_a_stuck_rotor_stays_where_it_is() -> None:
     torque = np.full(3000, 2.0)
     found = simulate_many(pack(model)[None], torque, 1e-3, np.zeros((1, 3)), ideal_sensors(1))[0]
     assert abs(found[-500:, 0].mean()) < 1e-3
-
-
-@settings(max_examples=40, deadline=None)
-@given(st.integers(0, 10_000), st.integers(1, 6))
-def test_a_bounded_step_is_the_best_within_its_bounds(seed: int, size: int) -> None:
-    rng = np.random.default_rng(seed)
-    root = rng.normal(size=(size + 2, size))
-    matrix, gradient = root.T @ root + 0.1 * np.eye(size), rng.normal(size=size) * 3
-    lower, upper = -rng.uniform(0.1, 1, size), rng.uniform(0.1, 1, size)
-    x = box_step(matrix, gradient, lower, upper)
-    assert np.all(x >= lower - 1e-12)
-    assert np.all(x <= upper + 1e-12)
-    pull = gradient - matrix @ x
-    inside = (x > lower + 1e-9) & (x < upper - 1e-9)
-    assert np.all(np.abs(pull[inside]) < 1e-6)
-    assert np.all(pull[x <= lower + 1e-9] < 1e-6)
-    assert np.all(pull[x >= upper - 1e-9] > -1e-6)

@@ -13,7 +13,8 @@ import pytest
 from scipy import signal
 
 from hil.analysis.diagnosis import Diagnosis
-from hil.analysis.diagnosis._diagnose import ASK_FOR_CHAIN, diagnose
+from hil.analysis.diagnosis._diagnose import diagnose
+from hil.analysis.diagnosis.findings.assembly import ASK_FOR_CHAIN
 from hil.core.channels import INPUT, TIME
 from hil.core.errors import BadInputError
 from hil.core.model import Model, TransferFunction, model_from_dict, model_to_toml

@@ -14,7 +14,6 @@ def test_blocks_are_means_at_the_rate_of_fits() -> None:
     trace = one_trace()
     assert trace.dt * trace.block == pytest.approx(0.004)
     assert trace.measured[3] == pytest.approx(trace.samples[12:16].mean(axis=0))
-    assert trace.block_time_s[0] == pytest.approx(0.0015)
 
 
 def test_what_does_not_fill_a_block_is_left_out() -> None:

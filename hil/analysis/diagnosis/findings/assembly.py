@@ -1,0 +1,270 @@
+"""What one likelihood finds (`hil.analysis.missing_effects`), as a diagnosis: gaps, places, consequences."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis._asked import Asked
+from hil.analysis.diagnosis.data.gap import CONDITIONS, ChannelGap, GapMap, channel_gaps, gap_map, made_worse
+from hil.analysis.diagnosis.data.trace import Trace
+from hil.analysis.diagnosis.findings.consequences import consequences
+from hil.analysis.diagnosis.findings.held_out import HeldOut, furthest
+from hil.analysis.diagnosis.findings.named import as_corrections, clean, worth_naming
+from hil.analysis.diagnosis.findings.result import (
+    Alternative,
+    Diagnosis,
+    NamedEffect,
+    Overlay,
+    Start,
+    Verdict,
+)
+from hil.analysis.diagnosis.findings.separating import plan_file, plan_within_recordings, worth_a_plan
+from hil.analysis.diagnosis.findings.thresholds import CHANNEL_NOISES
+from hil.analysis.diagnosis.findings.verdict import open_channels
+from hil.analysis.diagnosis.findings.words import Where, band_of_gap, where_changed
+from hil.analysis.missing_effects import OUT_OF_TIME, Named, Outcome, Replay
+from hil.core.channels import OUTPUTS
+from hil.core.effects import EFFECTS
+from hil.core.errors.wording import multiple, share
+from hil.core.model import EffectUse, Model
+from hil.plant import gear_ratio_of
+
+Array = npt.NDArray[np.float64]
+
+ASK_FOR_CHAIN = (
+    "transfer functions have no parts: what is missing inside the axle (play, friction, a mount, a tyre) "
+    "cannot be added to them, nor can one of their numbers be corrected. Get the chain: 'hil run "
+    "identification', then 'hil identify' on its recording writes physical.toml: give that as --model"
+)
+
+NUMBERS_TRADE = (
+    "other numbers of the base model would only trade one channel's error for another's: it stays as it came"
+)
+
+
+def diagnosis_of(
+    found: Outcome,
+    base: Model,
+    asked: Asked,
+    notes: Sequence[str] = (),
+) -> Diagnosis:
+    """An outcome as a diagnosis.
+
+    Args:
+        base: the model as it came.
+        notes: on the data.
+    """
+    fitted = _Shown.of(found.fitted, base, found.model, found.noise)
+    if found.verdict == "unknown" and any(one.gap > fitted.before[c].gap for c, one in fitted.after.items()):
+        return diagnosis_of(_as_it_came(found, base), base, asked, (*notes, NUMBERS_TRADE))
+    held = _Shown.of(found.held_out, base, found.model, found.noise)
+    named = tuple(_named(found, one, fitted) for one in found.effects)
+    small = [one for one in named if not worth_naming(one.use, fitted.traces, asked.least, base)]
+    effects = tuple(one for one in named if one not in small)
+    unseen = HeldOut(held.before, held.after, furthest(held.traces, found.noise, held.after_samples))
+    verdict, remaining = _verdict(found, effects, unseen, fitted)
+    doubt = unseen.words(verdict)
+    start, updates = _numbers(found, fitted)
+    return Diagnosis(
+        verdict=verdict,
+        base=base,
+        model=found.model,
+        effects=effects if verdict == "named" else (),
+        parameter_updates=updates | as_corrections(small),
+        alternatives=_alternatives(found, fitted),
+        gap_before=fitted.before,
+        gap_after=fitted.after,
+        holdout_before=held.before,
+        holdout_after=held.after,
+        map_before=fitted.map_before,
+        map_after=fitted.map_after,
+        signature=remaining,
+        overlays=fitted.overlays,
+        notes=(
+            *notes,
+            *_classes(found.effects),
+            *_steadied(found),
+            *([doubt] if doubt else ()),
+            *([ASK_FOR_CHAIN] if base.transfer_functions and verdict == "unknown" else ()),
+        ),
+        seconds=found.seconds,
+        unfinished=_time_is_up(asked) if found.unfinished == OUT_OF_TIME else found.unfinished,
+        consequences=consequences(base, found.model, found.as_likely),
+        start=start,
+        open_channels=_open(fitted.after),
+        held_out_open=unseen.open(verdict),
+        worse=tuple(made_worse(fitted.map_before, fitted.map_after)),
+    )
+
+
+def _time_is_up(asked: Asked) -> str:
+    return f"{asked.at_most_s / 60.0:.3g} min of processor time were up (--at-most)"
+
+
+def _as_it_came(found: Outcome, base: Model) -> Outcome:
+    """An outcome without a name that gives the model back as it came: its numbers would only trade errors."""
+    return replace(
+        found,
+        model=base,
+        numbers={},
+        base_was_far=False,
+        as_likely=(),
+    )
+
+
+@dataclass(frozen=True)
+class _Shown:
+    """Recordings at full rate beside the model as it came and the one given back."""
+
+    replays: tuple[Replay, ...]
+    traces: list[Trace]
+    before_samples: list[Array]
+    after_samples: list[Array]
+    before: dict[str, ChannelGap]
+    after: dict[str, ChannelGap]
+    map_before: GapMap
+    map_after: GapMap
+
+    @classmethod
+    def of(cls, replays: tuple[Replay, ...], base: Model, model: Model, noise: Array) -> _Shown:
+        """Both models on recordings; `noise` (3,) is a standard deviation of a sample."""
+        traces = [_trace(one) for one in replays]
+        before, after = ([one.outputs(each) for one in replays] for each in (base, model))
+        gaps = [channel_gaps(traces, noise, samples) for samples in (before, after)]
+        maps = [gap_map(traces, noise, samples) for samples in (before, after)]
+        return cls(replays, traces, before, after, gaps[0], gaps[1], maps[0], maps[1])
+
+    @property
+    def overlays(self) -> tuple[Overlay, ...]:
+        """Measured and simulated of each recording."""
+        every = zip(self.traces, self.before_samples, self.after_samples, strict=True)
+        return tuple(Overlay(t.name, t.dt, t.torque, t.samples, b, a) for t, b, a in every)
+
+
+def _trace(one: Replay) -> Trace:
+    s = one.series
+    return Trace(
+        s.name, s.torque, s.dt, s.block, s.samples, s.measured, s.samples[0], s.notes,
+        s.first_wheel_angle_rad, load=s.load,
+    )  # fmt: skip
+
+
+def _named(found: Outcome, one: Named, shown: _Shown) -> NamedEffect:
+    """With the place where the simulations without an effect and with it differ most."""
+    without = _without(found.model, one.use)
+    if without is None:  # a rounding, or a number of the base
+        channel = str(one.use.values.get("channel", OUTPUTS[0]))
+        band = (0.0, round(0.5 / shown.traces[0].dt, 1))
+        place = Where((channel,), band, "at all operating conditions")
+    else:
+        samples = [replay.outputs(without) for replay in shown.replays]
+        place = where_changed(
+            shown.traces, found.noise, samples, shown.after_samples, shown.map_before, shown.map_after
+        )
+    return NamedEffect(clean(one.use), one.standard_error, one.confidence, place, alike=one.alike)
+
+
+def _without(model: Model, use: EffectUse) -> Model | None:
+    """The model without an effect; None where it is no effect of the model."""
+    rest = [one for one in model.effects if one != use]
+    return model.with_effects(*rest) if len(rest) < len(model.effects) else None
+
+
+def _verdict(
+    found: Outcome, effects: tuple[NamedEffect, ...], unseen: HeldOut, shown: _Shown
+) -> tuple[Verdict, str]:
+    """The verdict, and what stays where it is `unknown`: small effects are corrections, not findings."""
+    verdict: Verdict = found.verdict
+    if verdict == "named" and effects and _stays_open(effects, shown):
+        verdict = "unknown"
+    if verdict == "named" and not effects:
+        verdict = "unknown" if _open(shown.after) else "none"
+    doubt = unseen.words(verdict)
+    if verdict == "none" and doubt:
+        return "unknown", doubt
+    return verdict, _remaining(found, shown) if verdict == "unknown" else ""
+
+
+def _stays_open(effects: tuple[NamedEffect, ...], shown: _Shown) -> bool:
+    """Whether a channel that had a gap near the noise keeps it: what is missing has another name, or none."""
+    before, after = (
+        np.array([gaps[name].noises if name in gaps else 0.0 for name in OUTPUTS])
+        for gaps in (shown.before, shown.after)
+    )
+    return any(open_channels([one.use.id for one in effects], before, after))
+
+
+def _remaining(found: Outcome, shown: _Shown) -> str:
+    """How much stays, in which channel, band and condition, and what a latent torque follows."""
+    worst = max(shown.after, key=lambda channel: shown.after[channel].noises)
+    gap, column = shown.after[worst], OUTPUTS.index(worst)
+    words = [f"{share(gap.gap, 2, digits=3)} of {worst} stay unexplained, {multiple(gap.noises)} its noise"]
+    words.append(band_of_gap(shown.traces, found.noise, shown.after_samples, column))
+    conditions = shown.map_after.by_condition[:, column]
+    if np.count_nonzero(np.isfinite(conditions)) > 1:
+        words.append(f"it is strongest at: {CONDITIONS[int(np.nanargmax(conditions))]}")
+    if found.curves and found.curves[0].share > 0.5:  # the larger part of it
+        words.append(
+            f"{share(found.curves[0].share)} of the torque that is missing follow {found.curves[0].over}"
+        )
+    closest = ", ".join(one.id for one in found.alternatives[:2])
+    return "; ".join(words) + (f"; closest, and not close enough: {closest}" if closest else "")
+
+
+def _open(gaps: Mapping[str, ChannelGap]) -> tuple[str, ...]:
+    return tuple(channel for channel, gap in gaps.items() if gap.noises > CHANNEL_NOISES)
+
+
+def _numbers(found: Outcome, shown: _Shown) -> tuple[Start | None, dict[str, tuple[float, float, float]]]:
+    """Numbers of a base that was far off as a start, else those that moved beyond doubt as corrections."""
+    moved = {name: (a, b, error) for name, (a, b, error) in found.numbers.items() if abs(b - a) > 2.0 * error}
+    named = {str(one.use.values["parameter"]) for one in found.effects if one.id == "parameter_mismatch"}
+    if not found.base_was_far:
+        return None, {name: values for name, values in moved.items() if name not in named}
+    gaps = {name: ChannelGap(one.numbers, one.noise_floor) for name, one in found.gap.items()}
+    return Start(moved, tuple(t.name for t in shown.traces), gaps), {}
+
+
+def _alternatives(found: Outcome, shown: _Shown) -> tuple[Alternative, ...]:
+    """Other names, each with the test that separates it from what is given back."""
+    first = found.effects[0].id if found.effects else "numbers"
+    shared = {name: one.confidence for one in found.effects for name in one.alike}
+    ratio = gear_ratio_of(found.model) or 1.0
+    others = []
+    for one in found.alternatives:
+        confidence = shared.get(EFFECTS[one.id].label(one.use.values), one.confidence)
+        if found.effects and not round(confidence, 2):
+            continue  # it would be shown as 0
+        text, plan = one.separating_test or EFFECTS[one.id].shown_by, ""
+        if one.model is not None and worth_a_plan(confidence, shown.traces):
+            text, plan = plan_within_recordings(
+                found.model, one.model, found.noise, shown.traces, ratio, (first, one.id)
+            )
+        name = plan_file(one.use) if plan else None
+        others.append(Alternative(one.use, confidence, text, name, plan or None))
+    return tuple(others)
+
+
+def _steadied(found: Outcome) -> list[str]:
+    """What keeps the model from drifting without a name."""
+    if found.steadied is None:
+        return []
+    values = ", ".join(f"{name} = {value:.3g}" for name, value in found.steadied.values.items())
+    return [
+        f"without any loss the model would drift: it carries {found.steadied.id} ({values}), which is not "
+        "named, as these recordings do not excite what tells losses apart: record a coast-down"
+    ]
+
+
+def _classes(effects: Sequence[Named]) -> list[str]:
+    """Names that the data cannot tell from one another, with the test that would."""
+    return [
+        f"these recordings cannot tell {one.id} from {' or '.join(one.alike)}: they share the confidence "
+        f"of {share(one.confidence)}. {one.separating_test}"
+        for one in effects
+        if one.alike
+    ]

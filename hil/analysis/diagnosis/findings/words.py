@@ -1,0 +1,100 @@
+"""What the data say, in words: where an effect acts, and where a gap that stays lies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis.data.gap import CONDITIONS, GapMap
+from hil.analysis.diagnosis.data.trace import Trace, blocks
+from hil.analysis.diagnosis.findings.thresholds import (
+    BAND_SHARES,
+    CHANNEL_SHARE,
+    EVERYWHERE,
+    LINE_WIDTH,
+    WORDS_SEGMENT,
+)
+from hil.analysis.power_density import power_density
+from hil.core.channels import OUTPUTS
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Where:
+    """Channels, frequency band and operating condition in which something acts."""
+
+    channels: tuple[str, ...]
+    band_hz: tuple[float, float]
+    condition: str
+
+
+def where_changed(
+    traces: Sequence[Trace],
+    noise: Array,
+    without: Sequence[Array],
+    with_: Sequence[Array],
+    before: GapMap,
+    after: GapMap,
+) -> Where:
+    """Where the simulation without an effect and with it (n x 3 each recording) differ most.
+
+    Args:
+        noise: standard deviation of a sample of each channel, (3,).
+    """
+    power = np.zeros(3)
+    frequency = _common_frequency([t.dt for t in traces])
+    density = np.zeros(len(frequency))
+    for trace, a, b in zip(traces, without, with_, strict=True):
+        change = np.where(trace.has, (b - a) / noise, 0.0)
+        power += np.sum(change**2, axis=0)
+        density += _density_at(frequency, change, trace.dt).sum(axis=1) * len(change)
+    ranked = np.argsort(-power)
+    channels = tuple(OUTPUTS[i] for i in ranked if power[i] > CHANNEL_SHARE * power[ranked[0]])
+    share = np.cumsum(density) / max(float(density.sum()), 1e-30)
+    low, high = np.interp(BAND_SHARES, share, frequency)
+    fall = np.nan_to_num(before.by_condition**2 - after.by_condition**2)[:, ranked[0]]
+    condition = CONDITIONS[int(np.argmax(fall))]
+    spread = (
+        "at all operating conditions"
+        if fall.max() < EVERYWHERE * max(float(np.median(fall)), 1e-12)
+        else condition
+    )
+    return Where(channels, (round(float(low), 2), round(float(high), 2)), spread)
+
+
+def band_of_gap(traces: Sequence[Trace], noise: Array, simulated: Sequence[Array], column: int) -> str:
+    """The line, or the band in Hz, that holds most of what a channel's error is above its noise.
+
+    Args:
+        noise: standard deviation of a sample of each channel, (3,).
+        simulated: channels of each recording at full rate, n x 3.
+    """
+    frequency = _common_frequency([t.dt * t.block for t in traces])
+    over = np.zeros(len(frequency))
+    for trace, values in zip(traces, simulated, strict=True):
+        if trace.has[column]:
+            period = trace.dt * trace.block
+            error = (trace.measured - blocks(values, trace.block))[:, [column]]
+            density = _density_at(frequency, error / noise[column], period)[:, 0]
+            over += len(error) * np.maximum(density - 2.0 * trace.dt, 0.0)  # white noise of variance 1
+    share = np.cumsum(over) / max(float(over.sum()), 1e-30)
+    low, high = np.interp(BAND_SHARES, share, frequency)
+    if high - low <= LINE_WIDTH * frequency[1]:
+        return f"it is a line at {frequency[int(np.argmax(over))]:.3g} Hz"
+    return f"it lies between {low:.2g} and {high:.2g} Hz"
+
+
+def _common_frequency(steps: Sequence[float], segment: int = WORDS_SEGMENT) -> Array:
+    """Frequencies in Hz that recordings with these sample times have in common."""
+    return np.linspace(0.0, 0.5 / max(steps), segment // 2 + 1)
+
+
+def _density_at(frequency: Array, values: Array, step: float, segment: int = WORDS_SEGMENT) -> Array:
+    """Power density of `values` (n x channels), sampled every `step` seconds, at `frequency`."""
+    length = min(segment, len(values))
+    own, density = power_density(values, step, length, about_mean=False)
+    return np.column_stack([np.interp(frequency, own, column) for column in density.T])

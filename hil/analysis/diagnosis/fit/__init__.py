@@ -1,1 +1,0 @@
-"""A hypothesis and its free numbers, fitted to all recordings together."""

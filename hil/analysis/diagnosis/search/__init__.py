@@ -1,1 +1,0 @@
-"""From a base model to the fewest effects that close its gap."""
