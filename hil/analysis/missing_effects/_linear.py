@@ -165,7 +165,10 @@ def responses_of(problem: Problem) -> Responses | None:
     frequency: Array = np.arange(len(power)).astype(np.float64) * (0.5 * rate / (len(power) - 1))
     lowest = max(edges_hz(rate)[1], min(one.lowest_hz for one in alike))
     used = (frequency >= lowest) & (frequency <= 0.5 * rate) & (power > 1e-9 * np.max(power))
-    found = cross / np.maximum(power, 1e-300)[:, None]
+    # torque is held over a sample: on its way to the plant it is late by half of one
+    held = np.sinc(frequency * longest.dt) * np.exp(-1j * np.pi * frequency * longest.dt)
+    power = power * np.abs(held) ** 2
+    found = cross * np.conj(held)[:, None] / np.maximum(power, 1e-300)[:, None]
     rest = np.maximum(outputs - np.abs(found) ** 2 * power[:, None], 0.0)
     return Responses(problem, frequency[used], power[used], found[used], rest[used], windows)
 

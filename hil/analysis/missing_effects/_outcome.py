@@ -72,7 +72,8 @@ class Replay:
                 return outputs
         one = self.series
         shown = replayed(model, one.torque, one.dt, one.samples, one.load, one.first_wheel_angle_rad)
-        self._shown.append((model, np.column_stack([shown[name] for name in OUTPUTS])))
+        none = np.zeros(len(one.torque))  # a model of functions may lack one
+        self._shown.append((model, np.column_stack([shown.get(name, none) for name in OUTPUTS])))
         return self._shown[-1][1]
 
     def errors(self, model: Model) -> Array:

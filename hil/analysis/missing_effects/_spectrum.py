@@ -90,7 +90,7 @@ class Spectrum:
         )
         scale = np.sqrt(self.variance[channels] @ bins / np.sum(bins))
         part = values[:, : len(weight)] * weight[:, None] / scale
-        return np.asarray(part.reshape(len(values), -1), dtype=float)
+        return np.asarray(part.reshape(len(values), math.prod(part.shape[1:])), dtype=float)
 
     def sent_back(self, values: Array, channels: Channels, rate_hz: float, lowest_hz: float) -> Array:
         """Slope of half the squares of `weighed` by each of values (blocks x channels): its transpose."""

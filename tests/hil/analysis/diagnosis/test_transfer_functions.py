@@ -139,7 +139,7 @@ def test_what_acts_before_and_behind_them_is_named(
     assert float(found.effects[0].use.values[parameter]) == pytest.approx(value, rel=0.03)
     assert ASK_FOR_CHAIN not in found.notes
     again = model_from_dict(tomllib.loads(model_to_toml(found.model)), "model.toml")
-    assert [use.id for use in again.effects] == [effect]
+    assert again.effects[0].id == effect  # corrections too small for a name may stand behind it
 
 
 def test_what_is_missing_inside_the_axle_is_located_and_asks_for_the_chain() -> None:

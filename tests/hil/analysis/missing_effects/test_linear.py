@@ -23,6 +23,12 @@ def test_numbers_of_a_chain_come_out_the_same_from_any_base(factor: float) -> No
         assert found[name] == pytest.approx(NUMBERS[name], rel=0.02)
 
 
+def test_torque_that_is_held_over_a_sample_is_no_dead_time() -> None:
+    """Half a sample of 1 ms would be an eighth of the dead time."""
+    found = structures(chirp_problem(1.0))[0].numbers
+    assert found["torque_delay"] == pytest.approx(NUMBERS["torque_delay"], rel=0.02)
+
+
 def test_a_lag_behind_a_far_base_shows_in_the_responses() -> None:
     lag = EffectUse("actuator_lag", {"time_constant_s": 0.008})
     best = structures(chirp_problem(2.5, lag))[1]
