@@ -61,20 +61,20 @@ def search(done: Candidates, show: Callable[[str], None]) -> None:
         was_weak, weak = weak, remains(had, has, problem.noise**2, problem.slow_noise) > HALF
         if weak and was_weak:
             break  # of two that go together the first may take off less than half, the second does not
-        best = _pruned(done, _without_chance(done, grown))
+        best = _pruned(done, _without_chance(done, best, grown))
         done.go_on_from(best)
         if any(EFFECTS[use.id].law.follows for use in best.point.hypothesis.terms):
             best = _with_better_angles(done, best)
 
 
-def _without_chance(done: Candidates, grown: Candidate) -> Candidate:
+def _without_chance(done: Candidates, best: Candidate, grown: Candidate) -> Candidate:
     """A grown hypothesis, or the one before it where that does as well from the numbers of the grown one.
 
     Beside an abrupt effect the misfit jumps with every number, and a name that takes nothing off may lead a
-    fit over a jump.
+    fit over a jump. Optional numbers that were opened beside the new name may be all that it brought.
     """
     before = grown.point.hypothesis.without(len(grown.names) - 1)
-    if not before.is_abrupt:
+    if not before.is_abrupt and before.opened == best.point.hypothesis.opened:
         return grown
     return max(grown, done.fitted(before, grown), key=done.score)
 
