@@ -97,10 +97,11 @@ def main() -> None:
         for title, model in (("three inertias", linear), ("default bench (wheel order)", with_order)):
             vector = slots.pack(model)
             refuse_more(vector)
+            rest = np.zeros(kernel.START_TYRE_TWIST + 1)
             out_c, out = kernel.empty_output(SAMPLES), kernel.empty_output(SAMPLES)
-            kernel.run(torque, load, True, DT, vector, np.zeros(5), STEP, out)  # compiles
+            kernel.run(torque, load, True, DT, vector, rest, STEP, out)  # compiles
             c_ms = best_of(partial(run_c, torque, vector, out_c))
-            ms = best_of(partial(kernel.run, torque, load, True, DT, vector, np.zeros(5), STEP, out))
+            ms = best_of(partial(kernel.run, torque, load, True, DT, vector, rest, STEP, out))
             for column in range(kernel.OUTPUT_COLUMNS):
                 largest_difference(f"C, column {column}", out[:, column], out_c[:, column], 1e-4)
             difference = largest_difference("C -O3", out[:, 0], out_c[:, 0], SAME)

@@ -19,8 +19,11 @@ SECONDS = 4.0
 _SAMPLES = (20, 10, 5)  # at first, as many as show no motion beyond their noise
 _VALUES = 10.0  # independent ones that a misfit holds: one an octave
 _DIGITS = 1e-6  # of a channel's rms: its noise at least
-_ROUNDS = 2  # outputs change nearly linearly with a start
+_AHEAD = (0.0, 0.5, -0.5)  # of how far a vehicle may be: where it is looked for, as a play has many minima
+_ROUNDS = 8  # outputs change nearly linearly with a start
+_HALVED = 4  # times is a step halved that leads nowhere
 _STEP = 1e-3  # of a channel's rms, for derivatives
+_SMALL = 0.02  # the same of what nobody reads, of how far that may be
 _FAR = 1e9  # noises: a model that runs away is so far off, not infinitely far
 
 
@@ -49,15 +52,18 @@ def white_noise(values: Array) -> float:
 def settled(
     first: Array, errors: Array, unrecorded: Array, measured: Array, show: Callable[[Array], Array]
 ) -> Array:
-    """Motor speed, wheel speed (rad/s) and shaft torque (N m) that suit the beginning of a recording best.
+    """The states of a start that suit the beginning of a recording best.
+
+    Motor speed, wheel speed (rad/s), shaft torque (N m), and what nobody reads: how far a vehicle is ahead of
+    the wheel (rad/s) and its tyre twisted (rad).
 
     What a model gets wrong is no noise: it holds few independent values, so that the first samples count for
     more. A start does not hide what a model lacks.
 
     Args:
-        first: (3,), what first samples show; a channel that was not recorded follows from others.
-        errors: (3,), standard errors of that.
-        unrecorded: (3,), what a torque that was not recorded may have added before the first sample.
+        first: (5,), what first samples show; a channel that was not recorded follows from others.
+        errors: (5,), standard errors of that.
+        unrecorded: (5,), what a torque that was not recorded may have added before the first sample.
         measured: n x 3, NaN where a channel was not recorded.
         show: gives the outputs (n x 3) from a start.
     """
@@ -68,7 +74,7 @@ def settled(
     size = np.sqrt(np.mean(np.where(there, measured, 0.0) ** 2, axis=0))
     noise = np.nan_to_num(np.array([white_noise(one) for one in measured.T]))
     noise = np.maximum(noise, _DIGITS * np.where(size > 0.0, size, 1.0))
-    steps = _STEP * np.where(size > 0.0, size, 1.0)
+    steps = np.append(_STEP * np.where(size > 0.0, size, 1.0), _SMALL * unsure[3:])
 
     known: dict[bytes, Array] = {}  # a later search begins where an earlier one did
 
@@ -82,18 +88,28 @@ def settled(
         error = np.where(there, measured - show(start), 0.0) / noise
         return np.asarray(np.clip(np.nan_to_num(error, nan=_FAR), -_FAR, _FAR), dtype=float)
 
-    start = _least(first, unsure, steps, away, np.where(there, 1.0, 0.0))
+    unread = np.append(np.zeros(3), unsure[3:])
+    begins = [first + share * unread for share in (_AHEAD if unread.any() else _AHEAD[:1])]
+    ends = [_least(first, unsure, steps, away, np.where(there, 1.0, 0.0), one) for one in begins]
+    start = min(ends, key=lambda one: float(np.sum(away(one) ** 2)))
     misfit = np.maximum(np.mean(away(start) ** 2, axis=0), 1.0)
-    counts = 1.0 / (1.0 + (misfit - 1.0) * len(measured) / _VALUES) / misfit
+    counts = 1.0 / (1.0 + (misfit - 1.0) * len(measured) / _VALUES)
     unsure = np.hypot(errors, unrecorded / np.max(misfit))  # of a wrong model it would take up the misfit
-    return _least(first, unsure, steps, away, np.where(there, counts, 0.0))
+    return _least(first, unsure, steps, away, np.where(there, counts, 0.0), start if unread.any() else first)
 
 
-def _least(first: Array, unsure: Array, steps: Array, away: Callable[[Array], Array], counts: Array) -> Array:
-    """The likeliest start, by Gauss and Newton's steps.
+def _least(
+    first: Array,
+    unsure: Array,
+    steps: Array,
+    away: Callable[[Array], Array],
+    counts: Array,
+    start: Array,
+) -> Array:
+    """The likeliest start, by Gauss and Newton's steps from another.
 
     Args:
-        unsure: (3,), how far `first` may be off.
+        unsure: how far `first` may be off.
         away: errors (n x 3) of a start in noises.
         counts: (3,), what an error of each channel counts for.
     """
@@ -103,15 +119,20 @@ def _least(first: Array, unsure: Array, steps: Array, away: Callable[[Array], Ar
         whole = (away(start) * np.sqrt(counts)).ravel()
         return np.concatenate([whole, ((start - first) / np.maximum(unsure, 1e-300))[free]])
 
-    start, left = first.astype(float), rows(first)
+    start = start.astype(float)
+    left = rows(start)
     for _ in range(_ROUNDS):
         slopes = np.stack([(rows(start + one) - left) / one.sum() for one in np.diag(steps)[free]])
-        trial = start.copy()
-        trial[free] -= np.linalg.lstsq(slopes.T, left, rcond=None)[0]
-        after = rows(trial)
-        if not after @ after < left @ left:
+        step = np.zeros(len(start))
+        step[free] = -np.linalg.lstsq(slopes.T, left, rcond=None)[0]
+        for _ in range(_HALVED):
+            after = rows(start + step)
+            if after @ after < left @ left:
+                break
+            step *= 0.5  # contact comes and goes on the way
+        else:
             break
-        start, left = trial, after
+        start, left = start + step, after
     return start
 
 

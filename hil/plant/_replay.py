@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -32,7 +33,9 @@ _SLOW_HZ = 1e-3
 class Start:
     """Where a replay begins: motor and wheel speed in rad/s, shaft torque in N m (wheel side).
 
-    `motor_torque_nm` has acted before the first sample; None: the first sample's torque.
+    `motor_torque_nm` has acted before the first sample; None: the first sample's torque. A vehicle behind a
+    tyre may be faster than the wheel, as in mid-motion, by `vehicle_ahead_rad_s`, and the tyre twisted by
+    `tyre_twist_rad` more than the shaft torque holds.
     """
 
     motor_speed_rad_s: float = 0.0
@@ -40,6 +43,8 @@ class Start:
     shaft_torque_nm: float = 0.0
     motor_torque_nm: float | None = None
     wheel_angle_rad: float = 0.0
+    vehicle_ahead_rad_s: float = 0.0
+    tyre_twist_rad: float = 0.0
 
 
 def simulate(
@@ -78,6 +83,8 @@ def simulate(
                 start.shaft_torque_nm,
                 before,
                 start.wheel_angle_rad,
+                start.vehicle_ahead_rad_s,
+                start.tyre_twist_rad,
             ]
         )
         load = np.zeros(len(torque)) if load_nm is None else np.ascontiguousarray(load_nm, dtype=float)
@@ -148,7 +155,10 @@ def _along(
     ratio = gear_ratio_of(model)
     if not np.isfinite(recorded[0, :2]).any() or ratio is None or form_of(model)[len(LUMPED) :]:
         return {}
-    begin = np.array([[start.motor_speed_rad_s, start.wheel_speed_rad_s, start.shaft_torque_nm]])
+    begin = np.array([[
+        start.motor_speed_rad_s, start.wheel_speed_rad_s, start.shaft_torque_nm,
+        start.vehicle_ahead_rad_s, start.tyre_twist_rad,
+    ]])  # fmt: skip
     sensors = np.stack([sensor_of(model, name) for name in OUTPUTS])[None]
     angles = _recorded.turned(recorded, dt, ratio, start.wheel_angle_rad)
     rests = start.motor_torque_nm is not None  # a sample before the first shows that no torque has acted
@@ -246,10 +256,13 @@ def settled_start(
         errors = np.where(np.isfinite(errors), errors, followed * errors[[1, 0, 2]])
     read, errors = np.nan_to_num(read), np.nan_to_num(errors)
     rests = _rests(model, float(read[2]), float(torque[0]))
+    stands = np.all(np.abs(read[:2]) <= errors[:2])
+    unread = np.zeros(2) if stands else _behind_a_tyre(model, torque, measured)
+    read, errors = np.append(read, np.zeros(2)), np.append(errors, unread)
 
     def from_states(at: Array) -> Start:
-        motor, wheel, shaft = at.tolist()
-        return Start(motor, wheel, shaft, 0.0 if rests else None, wheel_angle_rad)
+        motor, wheel, shaft, ahead, twist = at.tolist()
+        return Start(motor, wheel, shaft, 0.0 if rests else None, wheel_angle_rad, ahead, twist)
 
     def show(at: Array) -> Array:
         load = None if load_nm is None else load_nm[:count]
@@ -258,6 +271,18 @@ def settled_start(
 
     shows = _by_superposition(show, read) if _is_linear(model) else show
     return from_states(_recorded.settled(read, errors, _unrecorded(model, torque, dt), measured, shows))
+
+
+def _behind_a_tyre(model: Model, torque_nm: Array, measured: Array) -> Array:
+    """How far ahead of the wheel a vehicle may be (rad/s), and a tyre be twisted (rad): nobody reads them.
+
+    By what the largest torque moves wheel and tyre; (2,), zero without a tyre.
+    """
+    if model.kind == "transfer_function" or (chain := slots.chain_numbers(model)).kind != slots.THREE_INERTIA:
+        return np.zeros(2)
+    shaft = measured[:, 2] if np.isfinite(measured[0, 2]) else torque_nm * chain.gear_ratio
+    holds = max(chain.tyre_damping, math.sqrt(chain.tyre_stiffness * chain.wheel_inertia))
+    return float(np.max(np.abs(shaft))) / np.array([holds, chain.tyre_stiffness])
 
 
 def _is_linear(model: Model) -> bool:
@@ -278,17 +303,17 @@ def _by_superposition(show: Callable[[Array], Array], first: Array) -> Callable[
 
 
 def _unrecorded(model: Model, torque_nm: Array, dt: float) -> Array:
-    """Change of a start, (3,), by what was asked for before the first sample and acts after it.
+    """Change of a start, (5,), by what was asked for before the first sample and acts after it.
 
     It was no larger than what is asked for in the same time after it.
     """
     if model.kind == "transfer_function":
-        return np.zeros(len(OUTPUTS))
+        return np.zeros(5)
     delay_s = model.parameters.get("torque_delay", 0.0)
     for use in model.effects:
         delay_s += sum(float(use.values[name]) for name in _LATE.get(use.id, ()))
     largest = float(np.max(np.abs(torque_nm[: 1 + round(delay_s / dt)])))
-    return np.array([largest * delay_s / model.parameters["motor_inertia"], 0.0, 0.0])
+    return np.array([largest * delay_s / model.parameters["motor_inertia"], 0.0, 0.0, 0.0, 0.0])
 
 
 def gear_ratio_of(model: Model) -> float | None:

@@ -33,7 +33,9 @@ OUT_WHEEL_APART, OUT_SHAFT_APART = OUTPUT_COLUMNS, OUTPUT_COLUMNS + 1
     START_SHAFT_TORQUE,
     START_MOTOR_TORQUE,
     START_WHEEL_ANGLE,
-) = range(5)
+    START_VEHICLE_AHEAD,  # of the wheel, in mid-motion of a tyre between them
+    START_TYRE_TWIST,  # beyond what the shaft torque holds
+) = range(7)
 _PARAMETERS = len(P.SLOTS)
 _MEMORIES = len(X.NO_MEMORY)
 
@@ -211,6 +213,9 @@ def run(torque, load, coupled, dt, vector, start, longest_step, out, beside=()):
         slewed,
         start[START_WHEEL_ANGLE],
     )
+    if p[P.KIND] == P.THREE_INERTIA:
+        lumped = put(lumped, X.VEHICLE_SPEED, lumped[X.VEHICLE_SPEED] + start[START_VEHICLE_AHEAD])
+        lumped = put(lumped, X.TYRE_TWIST, lumped[X.TYRE_TWIST] + start[START_TYRE_TWIST])
     x = lumped + beside
     for k in range(torque.shape[0]):
         outputs(x, memories, p, slewed, coupled, load[k], out[k])

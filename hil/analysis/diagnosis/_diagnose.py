@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 
-from hil.analysis.diagnosis._asked import Asked
+from hil.analysis.diagnosis.asked import Asked
 from hil.analysis.diagnosis.data.noise import stated_noise
 from hil.analysis.diagnosis.data.sanity import examined
 from hil.analysis.diagnosis.data.slow_motion import with_outputs_of

@@ -284,7 +284,7 @@ def _beside_the_base(done: Candidates, best: Candidate, least: float) -> list[tu
     """Names beside the base's numbers as they came, where these alone moved for more than a name costs.
 
     A gain or a lag of a sensor may look like three numbers that are wrong: from there a fit would not come
-    back.
+    back. Its own numbers are fitted first, the base's held: where that is right, a play has one minimum.
     """
     if best.names:
         return []
@@ -300,7 +300,8 @@ def _beside_the_base(done: Candidates, best: Candidate, least: float) -> list[tu
     ]
     found = []
     for one, *_ in best_by_name(promised, 1):
-        starts = (numbers.with_term(one.use) for numbers in (base, one.numbers))
+        held = done.fitted(base.with_term(one.use), near, held=frozenset(base.numbers))
+        starts = held.point.hypothesis, one.numbers.with_term(one.use)
         found.append((_likelier(done, near, *starts), one.gain - behind))
     return found
 

@@ -12,7 +12,7 @@ make up a name that takes off less than itself.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -37,6 +37,7 @@ from hil.core.model import EffectUse, Model
 Array = npt.NDArray[np.float64]
 
 _LATE = {"actuator_lag": ("sensor_lag", "time_constant_s"), "dead_time": ("channel_skew", "delay_s")}
+_ALONE = 2  # single names that may, near noise
 _RIVALS = 3  # names that may take the place of another
 _SHOWN = 5  # alternatives
 _LAW = 0.02  # of what an effect takes off is right in no law that bends
@@ -85,7 +86,12 @@ def judged(of: Judged, notes: tuple[str, ...]) -> Outcome:
     as_the_base = as_the_base_has(done, done.best) if _may_be_off(of, at) else frozenset[str]()
     best, at, shares = _worth_telling(of, done.best)
     _swapped(done, best)
-    candidates = list(done.found.values())
+    likelier = max((one for one in done.found.values() if len(one.names) == len(best.names)), key=done.score)
+    if done.score(likelier) > done.score(best):
+        best, at, shares = _worth_telling(of, likelier)
+    # more names than are worth telling decide nothing
+    most = len(best.names) or max(len(names) for names in done.found)
+    candidates = [one for one in done.found.values() if len(one.names) <= most]
     values = done.problem.powers(best.point.errors, once=True).values(done.problem.noise)
     weights = _weights(done.problem, candidates, values)
     rivals = _alike(done, best, candidates, weights)
@@ -186,13 +192,19 @@ def _swapped(done: Candidates, best: Candidate, asked: Callable[[EffectUse], boo
 
     A forward search finds a name beside those before it; names that could stand in its place must be given
     the chance, or the data would seem to tell them apart. Near noise the likeliest of those that were left
-    behind are fitted to their end.
+    behind are fitted to their end, and of several names each gives way to the likeliest single ones, from the
+    base's numbers as well: what was missing beside them then may have decided between them.
     """
     pool = sorted(done.found.values(), key=done.score, reverse=True)
     if done.problem.is_noise(best.point.errors):
         for one in [one for one in pool if len(one.names) == len(best.names)][: _RIVALS + 1]:
             if one.names != best.names:
                 done.fitted(one.point.hypothesis, one)
+        alone = [one for one in pool if len(one.names) == 1 and one.names[0] not in best.names]
+        for index in range(len(best.names)) if len(best.names) > 1 else ():
+            for rival in alone[:_ALONE]:
+                for begins in _in_its_place(done, best, index, rival):
+                    done.fitted(begins, best)
         return
     terms: dict[str, tuple[EffectUse, frozenset[str]]] = {}
     for one in pool:
@@ -205,6 +217,18 @@ def _swapped(done: Candidates, best: Candidate, asked: Callable[[EffectUse], boo
         fewer = best.point.hypothesis.without(index)
         for rival in [*terms.values()][:_RIVALS] if asked(use) else ():
             done.fitted(fewer.with_term(*rival), best)
+
+
+def _in_its_place(done: Candidates, best: Candidate, index: int, rival: Candidate) -> list[Hypothesis]:
+    """The best hypothesis with a rival in place of one of its effects, at numbers where a fit may begin.
+
+    They are the likelier of its own and the rival's; and the base's, to which the effects were fitted first.
+    """
+    fewer, other = best.point.hypothesis.without(index), rival.point.hypothesis
+    joined = fewer.with_term(other.terms[0], other.opened[0])
+    near = max(joined, replace(joined, numbers=other.numbers), key=lambda one: done.score(done.at(one, best)))
+    as_it_came = replace(joined, numbers=dict(fewer.base.parameters))
+    return [near, done.fitted(as_it_came, best, held=frozenset(joined.numbers)).point.hypothesis]
 
 
 def _without(done: Candidates, best: Candidate, index: int) -> Candidate:

@@ -64,21 +64,23 @@ def test_a_start_does_not_hide_what_a_model_lacks() -> None:
 
 
 def test_first_samples_without_noise_are_the_start() -> None:
-    first = np.array([3.0, 1.0, 2.0])
-    measured = np.tile(first, (100, 1))
-    assert np.array_equal(settled(first, np.zeros(3), np.zeros(3), measured, lambda at: measured + at), first)
+    first = np.array([3.0, 1.0, 2.0, 0.0, 0.0])
+    measured = np.tile(first[:3], (100, 1))
+    assert np.array_equal(
+        settled(first, np.zeros(5), np.zeros(5), measured, lambda at: measured + at[:3]), first
+    )
 
 
 def test_a_start_of_a_model_that_runs_away_is_found_without_overflow() -> None:
     """An inertia next to nothing shows 1e300 rad/s, and infinitely many after that."""
-    first, measured = np.array([3.0, 1.0, 2.0]), np.zeros((100, 3))
+    first, measured = np.array([3.0, 1.0, 2.0, 0.0, 0.0]), np.zeros((100, 3))
 
     def show(at: np.ndarray) -> np.ndarray:
-        shown = np.tile(1e300 * at, (100, 1))
+        shown = np.tile(1e300 * at[:3], (100, 1))
         shown[50:] = np.inf
         return shown
 
-    assert np.isfinite(settled(first, np.full(3, 0.1), np.zeros(3), measured, show)).all()
+    assert np.isfinite(settled(first, np.array([0.1, 0.1, 0.1, 0.0, 0.0]), np.zeros(5), measured, show)).all()
 
 
 def test_a_channel_that_was_not_recorded_has_no_beginning() -> None:

@@ -381,6 +381,18 @@ def test_a_recording_that_starts_under_steady_torque_goes_on_with_it():
     np.testing.assert_allclose(got["shaft_torque_nm"], truth["shaft_torque_nm"], rtol=0.01)
 
 
+@pytest.mark.parametrize("play", [False, True])
+def test_a_recording_that_begins_in_mid_motion_begins_with_its_vehicle(play):
+    """A vehicle that is ahead of its wheels pulls them along for the rest of a recording."""
+    model = THREE.with_effects(*([EffectUse("backlash", {"half_gap_rad": 0.01})] if play else []))
+    torque = 20.0 * np.sin(2 * np.pi * 1.3 * np.arange(9000) * DT)
+    truth = simulate(model, torque, DT, Start(100.0, 100.0 / P["gear_ratio"]))
+    late = {name: values[3100:] for name, values in truth.items()}
+    got = replay(model, recording(np.arange(5900) * DT, torque[3100:], **late))
+    speed = late["wheel_speed_rad_s"]
+    assert np.sqrt(np.mean((got["wheel_speed_rad_s"] - speed) ** 2)) < 0.05 * np.std(speed)
+
+
 def test_uneven_time_stamps_are_resampled_and_said():
     torque = step()
     truth = simulate(THREE, torque, DT)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._asked import Asked
+from hil.analysis.diagnosis.asked import Asked
 from hil.analysis.diagnosis.data.gap import CONDITIONS, ChannelGap, GapMap, channel_gaps, gap_map, made_worse
 from hil.analysis.diagnosis.data.trace import Trace
 from hil.analysis.diagnosis.findings.consequences import consequences

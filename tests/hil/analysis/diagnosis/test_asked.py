@@ -2,7 +2,7 @@
 
 import pytest
 
-from hil.analysis.diagnosis._asked import Asked
+from hil.analysis.diagnosis.asked import Asked
 from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hil.analysis.diagnosis import INTERRUPTED, Diagnosis, diagnose
-from hil.analysis.diagnosis._asked import Asked
+from hil.analysis.diagnosis.asked import Asked
 from hil.analysis.diagnosis.findings.assembly import diagnosis_of
 from hil.analysis.missing_effects import explain_gap
 from hil.core.effects import EFFECTS
