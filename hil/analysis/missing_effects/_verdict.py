@@ -202,8 +202,8 @@ def _swapped(done: Candidates, best: Candidate, asked: Callable[[EffectUse], boo
                 done.fitted(one.point.hypothesis, one)
         alone = [one for one in pool if len(one.names) == 1 and one.names[0] not in best.names]
         for index in range(len(best.names)) if len(best.names) > 1 else ():
-            for rival in alone[:_ALONE]:
-                for begins in _in_its_place(done, best, index, rival):
+            for single in alone[:_ALONE]:
+                for begins in _in_its_place(done, best, index, single):
                     done.fitted(begins, best)
         return
     terms: dict[str, tuple[EffectUse, frozenset[str]]] = {}
