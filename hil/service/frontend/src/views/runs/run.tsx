@@ -16,6 +16,7 @@ import { useStopOf } from "../../shell/stop.tsx";
 import { useStore } from "../../store.ts";
 import { Badge, Facts, Heading, Loaded, Moment, Section, verdictOf } from "../../ui/parts.tsx";
 import { Banner, ResetOf } from "../bench-banner.tsx";
+import { StoppedBench } from "../stopped-benches.tsx";
 import { againWith } from "../plans/start-values.ts";
 import { NoneThere } from "../none-there.tsx";
 import { Criteria } from "../criteria.tsx";
@@ -56,7 +57,7 @@ function Found({ run, bench }: { run: Run; bench: Bench | null }): JSX.Element {
       {isLive && state?.running?.id === run.id ? <Banner state={state} /> : null}
       {WAITING.includes(run.state) ? <WhyItWaits run={run} /> : null}
       {isOver ? <Outcome run={run} view={view.data} /> : null}
-      {isOver && !isPassed(run) && bench ? <ResetOf bench={bench} /> : null}
+      {isOver && bench ? isPassed(run) ? <StoppedBench bench={bench} /> : <ResetOf bench={bench} /> : null}
       {isOver ? <Unsettled run={run} view={view.data} /> : null}
       <RunFacts run={run} />
       <RunActions run={run} />
