@@ -61,7 +61,9 @@ class RunList:
         page, count = select(RunRow.id), select(func.count()).select_from(RunRow)
         if wanted.criterion:
             page, count = page.join(CriterionRow, _is(wanted)), count.join(CriterionRow, _is(wanted))
-        page = page.where(*where).order_by(*_order(wanted)).offset(wanted.first).limit(wanted.most)
+        page = (
+            page.where(*where).order_by(*_order(wanted)).offset(wanted.first).limit(wanted.most)
+        )
         with self._transaction() as session:
             numbers = list(session.scalars(page))
             listed = select(RunRow).where(RunRow.id.in_(numbers)).options(load_only(*_SHOWN))
@@ -100,8 +102,8 @@ class RunList:
     def criteria_beside(self, run: int) -> str:
         """Criteria of a run, and those of the newest runs that passed and have one of its first, as JSON.
 
-        By numbers of runs, of each criterion what `_JUDGED` lists, by name. A text: what reads it is another
-        process, and the service's loop does not go through it.
+        By numbers of runs: `criteria`, of each what `_JUDGED` lists, by name; `settings`, each plan, bench
+        and values. A text: what reads it is another process, and the service's loop does not go through it.
         """
         of_run = select(*_JUDGED).where(CriterionRow.run == run).order_by(CriterionRow.id)
         with self._transaction() as session:
@@ -114,7 +116,11 @@ class RunList:
                 for row in session.execute(beside).mappings():
                     judged = dict(row)
                     found.setdefault(judged.pop("run"), []).append(judged)
-        return json.dumps(found)
+            given = select(RunRow.id, RunRow.plan, RunRow.bench, RunRow.values_json).where(
+                RunRow.id.in_(found)
+            )
+            settings = {number: others for number, *others in session.execute(given)}
+        return json.dumps({"criteria": found, "settings": settings})
 
 
 def _is(wanted: RunsWanted) -> ColumnElement[bool]:
