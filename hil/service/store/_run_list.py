@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from sqlalchemy import ColumnElement, Engine, UnaryExpression, and_, func, or_, select
@@ -54,6 +55,7 @@ class RunList:
 
     def __init__(self, engine: Engine) -> None:
         self._transaction = sessionmaker(engine, expire_on_commit=False).begin
+        self._orders = {**_ORDERS, "duration": _took(engine.dialect.name)}
 
     def find(self, wanted: RunsWanted) -> FoundRuns:
         """A page of the runs that pass every filter, and how many do."""
@@ -62,7 +64,7 @@ class RunList:
         if wanted.criterion:
             page, count = page.join(CriterionRow, _is(wanted)), count.join(CriterionRow, _is(wanted))
         page = (
-            page.where(*where).order_by(*_order(wanted)).offset(wanted.first).limit(wanted.most)
+            page.where(*where).order_by(*_order(wanted, self._orders)).offset(wanted.first).limit(wanted.most)
         )
         with self._transaction() as session:
             numbers = list(session.scalars(page))
@@ -145,12 +147,19 @@ def _conditions(wanted: RunsWanted) -> list[ColumnElement[bool]]:
     return found
 
 
-def _order(wanted: RunsWanted) -> list[UnaryExpression[Any]]:
+def _order(wanted: RunsWanted, orders: Mapping[str, ColumnElement[Any]]) -> list[UnaryExpression[Any]]:
     """The column asked for, what has no value last; equal ones newest first."""
     if wanted.sort == "run" or (wanted.sort == "value" and not wanted.criterion):
         return [RunRow.id.asc() if wanted.rising else RunRow.id.desc()]
-    column = _ORDERS[wanted.sort]
+    column = orders[wanted.sort]
     return [(column.asc() if wanted.rising else column.desc()).nulls_last(), RunRow.id.desc()]
+
+
+def _took(dialect: str) -> ColumnElement[Any]:
+    """From a run's beginning to its end; null of one that has not ended. SQLite keeps moments as texts."""
+    if dialect == "sqlite":
+        return func.julianday(RunRow.ended_at) - func.julianday(RunRow.started_at)
+    return RunRow.ended_at - RunRow.started_at
 
 
 def _found(run: RunRow, criterion: CriterionRow | None, tags: list[str]) -> FoundRun:

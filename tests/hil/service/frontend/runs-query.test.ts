@@ -39,6 +39,11 @@ test("a column that is chosen again turns round, another begins with its usual e
   assert.deepEqual([byPlan.sort, byPlan.rising, byPlan.page], ["plan", true, 1]);
 });
 
+test("durations are sorted by the service, the longest first", () => {
+  const query = sorted(of(""), "duration");
+  assert.deepEqual([query.rising, toService(query).get("sort"), of("sort=duration").sort], [false, "duration", "duration"]);
+});
+
 test("ticked runs stand in the address and are not asked for", () => {
   const six = [1, 2, 3, 4, 5, 6].reduce(ticked, of("plan=short"));
   assert.equal(toAddress(ticked(six, 2)).get("chosen"), "1,3,4,5,6");

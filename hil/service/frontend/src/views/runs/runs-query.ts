@@ -1,6 +1,6 @@
 // Filters, order and page of the table of runs, as they stand in its address and as the service is asked.
 
-export const ORDERS = ["run", "plan", "bench", "dut", "verdict", "ended", "value"] as const;
+export const ORDERS = ["run", "plan", "bench", "dut", "verdict", "ended", "duration", "value"] as const;
 export type Order = (typeof ORDERS)[number];
 
 export const FILTERS = ["plan", "bench", "dut", "verdict", "requested_by", "state", "tag"] as const;

@@ -57,7 +57,7 @@ function NoSuch({ of: { filter, name } }: { of: NonNullable<ReturnType<typeof im
   return <span class="bad">{filter === "verdict" ? tx("There is no verdict '{name}'. Choose one of the list, or see <a>all runs</a>.", shown) : tx("There is no state '{name}'. Choose one of the list, or see <a>all runs</a>.", shown)}</span>;
 }
 
-const COLUMNS: [Order | "", string, string][] = [["run", t("run"), "number"], ["plan", t("plan"), ""], ["verdict", t("verdict"), ""], ["bench", t("bench"), ""], ["dut", t("device"), ""], ["ended", t("ended"), ""], ["", t("duration"), "number"], ["", t("by"), ""]];
+const COLUMNS: [Order | "", string, string][] = [["run", t("run"), "number"], ["plan", t("plan"), ""], ["verdict", t("verdict"), ""], ["bench", t("bench"), ""], ["dut", t("device"), ""], ["ended", t("ended"), ""], ["duration", t("duration"), "number"], ["", t("by"), ""]];
 
 interface TableOptions {
   runs: FoundRun[];
