@@ -90,12 +90,16 @@ class BestRunData(_Data):
     """The run to compare with: of those that passed the same criteria, the one farthest from its limits.
 
     That is the one whose smallest margin is largest. A margin is the distance from the value to the nearer
-    limit over the magnitude of that limit.
+    limit over the magnitude of that limit. For a run that did not pass, one of its plan, bench and values
+    comes before others, and else one that shares most of the three.
     """
 
     run: RunData | None = Field(description="null: no run has passed the criteria of this run")
     margin: float | None = Field(None, description="its smallest margin, over the criteria of its plan")
     criterion: str = Field("", description="the criterion of that margin")
+    other_values: dict[str, float] = Field(
+        {}, description="values of its plan's variables that are not those of this run"
+    )
     among: int = Field(description="how many runs passed the same criteria with the same limits")
 
 

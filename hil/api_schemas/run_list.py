@@ -11,7 +11,7 @@ from hil.api_schemas.api import BenchName, Number, PlanName, RunData, RunState, 
 from hil.api_schemas.notes import Tag
 
 #: What runs are sorted by; `value` is that of the criterion that is asked for.
-RunOrder = Literal["run", "plan", "bench", "dut", "verdict", "ended", "value"]
+RunOrder = Literal["run", "plan", "bench", "dut", "verdict", "ended", "duration", "value"]
 _Words = Annotated[str, Field(max_length=200, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
 LONGEST_PAGE = 200
 #: Beyond it no one pages: a filter finds what lies there.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Protocol
 
@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from hil.engine.ipc.ipc import Terminal
 
 logger = logging.getLogger(__name__)
+
+COMPILING = "compiling for this machine, once: a minute or two"
+_COMPILER = "hil.core.runtime.compiled"  # named here, for importing it takes longer than most commands
 
 
 class Show(Protocol):
@@ -97,6 +100,31 @@ class LoggedFeedback:
 
 
 LOGGED: Feedback = LoggedFeedback()
+
+
+@contextlib.contextmanager
+def telling_of_compilation(say: Callable[[str], None]) -> Iterator[None]:
+    """Say why nothing moves for a while, when a function is compiled here or in the process of the bench."""
+    told = _Told(lambda: say(COMPILING))
+    compiler = logging.getLogger(_COMPILER)
+    compiler.addHandler(told)
+    try:
+        yield
+    finally:
+        compiler.removeHandler(told)
+
+
+class _Told(logging.Handler):
+    """Calls for each line."""
+
+    def __init__(self, tell: Callable[[], None]) -> None:
+        super().__init__(logging.INFO)
+        self._tell = tell
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Whatever is compiled."""
+        del record
+        self._tell()
 
 
 def warn_of_damage(feedback: Feedback, recordings: Iterable[Recording]) -> None:

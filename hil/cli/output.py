@@ -6,14 +6,14 @@ import contextlib
 import datetime
 import logging
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from hil.app.feedback import LOGGED, Show
+from hil.app.feedback import LOGGED, Show, telling_of_compilation
 from hil.app.log import LOG
 from hil.app.result_file import to_json
 from hil.cli.streams import KEYS, complain, operators_terminal
@@ -23,8 +23,6 @@ from hil.core.result import AcceptedExpiry, CriterionResult, CriterionVerdict, I
 logger = logging.getLogger(__name__)
 
 _LEAST_SHARE, _LEAST_ELAPSED_S = 0.02, 2.0  # from which on a pace is known
-_COMPILING = "compiling for this machine, once: a minute or two"
-_COMPILER = "hil.core.runtime.compiled"  # named here, for importing it takes longer than most commands
 
 _STYLE: dict[CriterionVerdict, str] = {
     "pass": "green",
@@ -136,13 +134,8 @@ def _bar(description: str, log: Show) -> Iterator[Show]:
                 task, total=None if share is None else 1.0, completed=share or 0.0, now=text, left=left
             )
 
-        waits = _Waits(lambda: bar.update(task, now=_COMPILING))
-        compiler = logging.getLogger(_COMPILER)
-        compiler.addHandler(waits)
-        try:
+        with telling_of_compilation(lambda text: bar.update(task, now=text)):
             yield show
-        finally:
-            compiler.removeHandler(waits)
 
 
 def time_left(share: float | None, elapsed_s: float) -> str:
@@ -154,19 +147,6 @@ def time_left(share: float | None, elapsed_s: float) -> str:
     left_s = elapsed_s * (1.0 - share) / share
     left = f"{left_s:.0f} s" if left_s < 2 * 60 else f"{left_s / 60:.0f} min"
     return f"{share:.0%}, about {left} left"
-
-
-class _Waits(logging.Handler):
-    """Says why nothing moves for a while: the simulation is being compiled."""
-
-    def __init__(self, say: Callable[[], None]) -> None:
-        super().__init__(logging.INFO)
-        self._say = say
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Whatever is compiled."""
-        del record
-        self._say()
 
 
 def print_criteria(page: Console, criteria: tuple[CriterionResult, ...]) -> None:

@@ -26,6 +26,11 @@ class Heard:
     final: bool = False
 
 
+def only_listens(process: str) -> bool:
+    """Whether a process, by its command, only listens: it is a service's own, and ends by itself."""
+    return MOTOR_SPEED[-1] in process
+
+
 async def hear_motor_speed(bench: Path) -> Heard:
     """Listen to the bench of a file for a moment; nothing is sent.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from hil.core.result import CriterionResult
@@ -20,15 +20,30 @@ class BestRun:
     criterion: str
 
 
+@dataclass(frozen=True)
+class Setting:
+    """What a run was given: its plan, its bench, and values of all variables of the plan."""
+
+    plan: str
+    bench: str
+    values: Mapping[str, float]
+
+    def shared_with(self, other: Setting) -> int:
+        """How many of the three are the same."""
+        return (self.plan == other.plan) + (self.bench == other.bench) + (self.values == other.values)
+
+
 def best_run(
-    wanted: Sequence[CriterionResult], passed: Mapping[int, Sequence[CriterionResult]]
+    wanted: Sequence[CriterionResult],
+    passed: Mapping[int, Sequence[CriterionResult]],
+    nearness: Callable[[int], int] = lambda run: 0,
 ) -> tuple[BestRun | None, int]:
     """The best of the runs that were judged by the same criteria as a run, and how many these are.
 
     `wanted` are the criteria of that run, `passed` those of runs that passed, by number. Which plan a run is
     of does not count, so that copies do: runs with the same limits on the same criteria of their plans are of
     one kind. Checks of any device do not count, and a limit of zero has no margin. Of equals the newest
-    is best.
+    is best. Before all that a run with more `nearness`, by its number, is better.
     """
     demands = _demands(wanted)
     alike = {
@@ -37,7 +52,7 @@ def best_run(
         if demands and _demands(ones) == demands and (margins := _margins(ones))
     }
     ranked = [BestRun(number, margin, criterion) for number, (margin, criterion) in alike.items()]
-    return max(ranked, key=lambda one: (one.margin, one.run), default=None), len(alike)
+    return max(ranked, key=lambda one: (nearness(one.run), one.margin, one.run), default=None), len(alike)
 
 
 def _of_plan(criteria: Sequence[CriterionResult]) -> list[CriterionResult]:

@@ -21,6 +21,7 @@ from hil.core.errors import BenchError, HilError
 from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.execution.benches import Bench
 from hil.execution.data_folder import folder_of
+from hil.execution.motor_speed import only_listens
 from hil.execution.run_execution import RunEnd, RunExecution, RunningRun, end_of_left
 from hil.execution.run_process import alive_in
 from hil.service.stop_post import StopPost
@@ -145,7 +146,7 @@ class Queue:
         if place.held_by:
             return "in_use", place.held_by
         used = self._used_by(place)
-        return ("in_use", used) if used else ("free", "")
+        return ("in_use", used) if used and not only_listens(used) else ("free", "")
 
     async def work(self) -> None:
         """Begin runs as benches become free, until `close`."""

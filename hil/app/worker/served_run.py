@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hil.app.feedback import LoggedFeedback
+from hil.app.feedback import LoggedFeedback, telling_of_compilation
 from hil.app.interrupts import INTERRUPTS
 from hil.engine.process.hardware_process import ASKED_WITHIN_S, LAST_WORDS_S
 
@@ -91,7 +91,8 @@ class _Service(LoggedFeedback):
             if not self._pipe.crowded:
                 self._pipe.send(Progressed(share=-1.0 if share is None else share, text=text))
 
-        yield show
+        with telling_of_compilation(show):
+            yield show
 
     def complain(self, text: str) -> None:
         """For the run's log; the outcome has it, too."""

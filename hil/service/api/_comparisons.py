@@ -32,12 +32,18 @@ async def compare_runs(
 
 @router.get("/best", name="find_best_run")
 async def find_best_run(service: TheService, me: Viewer, run: Annotated[RunId, Query()]) -> BestRunData:
-    """Of the runs that passed the same criteria with the same limits, the one farthest from its limits."""
+    """Of the runs that passed the same criteria with the same limits, the one farthest from its limits.
+
+    For a run that did not pass, those of its own plan, bench and values come first.
+    """
     del me
     of = _over(service, run)
     criteria = service.run_list.criteria_beside(of.id)
+    usual = {
+        plan.name: {name: one.default for name, one in plan.variables.items()} for plan in service.plans.all()
+    }
     found = await service.worker_pool.ask(
-        "best_run", run=of.id, passed=of.verdict == "pass", criteria=criteria
+        "best_run", run=of.id, passed=of.verdict == "pass", criteria=criteria, usual=usual
     )
     best = found["run"]
     return BestRunData(**{**found, "run": None if best is None else service.runs.get(best)})

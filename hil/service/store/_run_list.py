@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from sqlalchemy import ColumnElement, Engine, UnaryExpression, and_, func, or_, select
@@ -54,6 +55,7 @@ class RunList:
 
     def __init__(self, engine: Engine) -> None:
         self._transaction = sessionmaker(engine, expire_on_commit=False).begin
+        self._orders = {**_ORDERS, "duration": _took(engine.dialect.name)}
 
     def find(self, wanted: RunsWanted) -> FoundRuns:
         """A page of the runs that pass every filter, and how many do."""
@@ -61,7 +63,9 @@ class RunList:
         page, count = select(RunRow.id), select(func.count()).select_from(RunRow)
         if wanted.criterion:
             page, count = page.join(CriterionRow, _is(wanted)), count.join(CriterionRow, _is(wanted))
-        page = page.where(*where).order_by(*_order(wanted)).offset(wanted.first).limit(wanted.most)
+        page = (
+            page.where(*where).order_by(*_order(wanted, self._orders)).offset(wanted.first).limit(wanted.most)
+        )
         with self._transaction() as session:
             numbers = list(session.scalars(page))
             listed = select(RunRow).where(RunRow.id.in_(numbers)).options(load_only(*_SHOWN))
@@ -100,8 +104,8 @@ class RunList:
     def criteria_beside(self, run: int) -> str:
         """Criteria of a run, and those of the newest runs that passed and have one of its first, as JSON.
 
-        By numbers of runs, of each criterion what `_JUDGED` lists, by name. A text: what reads it is another
-        process, and the service's loop does not go through it.
+        By numbers of runs: `criteria`, of each what `_JUDGED` lists, by name; `settings`, each plan, bench
+        and values. A text: what reads it is another process, and the service's loop does not go through it.
         """
         of_run = select(*_JUDGED).where(CriterionRow.run == run).order_by(CriterionRow.id)
         with self._transaction() as session:
@@ -114,7 +118,11 @@ class RunList:
                 for row in session.execute(beside).mappings():
                     judged = dict(row)
                     found.setdefault(judged.pop("run"), []).append(judged)
-        return json.dumps(found)
+            given = select(RunRow.id, RunRow.plan, RunRow.bench, RunRow.values_json).where(
+                RunRow.id.in_(found)
+            )
+            settings = {number: others for number, *others in session.execute(given)}
+        return json.dumps({"criteria": found, "settings": settings})
 
 
 def _is(wanted: RunsWanted) -> ColumnElement[bool]:
@@ -139,12 +147,19 @@ def _conditions(wanted: RunsWanted) -> list[ColumnElement[bool]]:
     return found
 
 
-def _order(wanted: RunsWanted) -> list[UnaryExpression[Any]]:
+def _order(wanted: RunsWanted, orders: Mapping[str, ColumnElement[Any]]) -> list[UnaryExpression[Any]]:
     """The column asked for, what has no value last; equal ones newest first."""
     if wanted.sort == "run" or (wanted.sort == "value" and not wanted.criterion):
         return [RunRow.id.asc() if wanted.rising else RunRow.id.desc()]
-    column = _ORDERS[wanted.sort]
+    column = orders[wanted.sort]
     return [(column.asc() if wanted.rising else column.desc()).nulls_last(), RunRow.id.desc()]
+
+
+def _took(dialect: str) -> ColumnElement[Any]:
+    """From a run's beginning to its end; null of one that has not ended. SQLite keeps moments as texts."""
+    if dialect == "sqlite":
+        return func.julianday(RunRow.ended_at) - func.julianday(RunRow.started_at)
+    return RunRow.ended_at - RunRow.started_at
 
 
 def _found(run: RunRow, criterion: CriterionRow | None, tags: list[str]) -> FoundRun:

@@ -3,26 +3,49 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from hil.core.result import CriterionResult
-from hil.service.best_run import best_run
+from hil.service.best_run import Setting, best_run
 
 
-def best(run: int, passed: bool, criteria: str) -> dict[str, Any]:
+def best(run: int, passed: bool, criteria: str, usual: Mapping[str, Mapping[str, float]]) -> dict[str, Any]:
     """Number, margin and criterion of the best run, and among how many; the number is None if there is none.
+
+    Beside a run that did not pass, one of the same plan, bench and values comes before a better one.
+    `other_values` are those of the best run that are not the run's own.
 
     Args:
         run: the run whose criteria count.
         passed: whether that run is one of those that passed.
         criteria: `RunList.criteria_beside`.
+        usual: values that plans have by themselves, by the plans' names.
     """
+    beside = json.loads(criteria)
     found = {
         int(number): [CriterionResult.model_validate(one) for one in judged]
-        for number, judged in json.loads(criteria).items()
+        for number, judged in beside["criteria"].items()
     }
-    wanted = found[run] if passed else found.pop(run)
-    one, among = best_run(wanted, found)
+    settings = {
+        int(number): Setting(plan, bench, {**usual.get(plan, {}), **json.loads(values)})
+        for number, (plan, bench, values) in beside["settings"].items()
+    }
+    mine = settings[run]
+    if passed:
+        one, among = best_run(found[run], found)
+    else:
+        wanted = found.pop(run)
+        one, among = best_run(wanted, found, lambda number: settings[number].shared_with(mine))
     if one is None:
         return {"run": None, "among": among}
-    return {"run": one.run, "margin": one.margin, "criterion": one.criterion, "among": among}
+    values = {
+        name: value for name, value in settings[one.run].values.items() if mine.values.get(name) != value
+    }
+    return {
+        "run": one.run,
+        "margin": one.margin,
+        "criterion": one.criterion,
+        "among": among,
+        "other_values": values,
+    }

@@ -13,6 +13,7 @@ from hil.core.result import CriterionResult, CriterionVerdict, RunResult
 from hil.service.best_run import best_run
 from hil.service.store import NewRun, RunList, RunStore
 from hil.service.worker_pool import WorkerPool
+from hil.service.worker_pool._best_run import best
 
 
 def criterion(
@@ -80,6 +81,43 @@ def test_a_relative_limit_differs_from_run_to_run_and_counts_with_its_own() -> N
     assert (best.run, best.margin, among) == (2, pytest.approx(0.4), 2)
 
 
+_Run = tuple[float, str, str, dict[str, float]]
+
+
+def beside(*runs: _Run) -> str:
+    """As the database has it: the peak of each run, at most 500 N m, its plan, its bench, its values."""
+    criteria = {
+        number: [{"id": "s.peak", "value": peak, "unit": "N m", "upper": 500.0, "verdict": "pass"}]
+        for number, (peak, *_) in enumerate(runs, 1)
+    }
+    settings = {
+        number: (plan, bench, json.dumps(values)) for number, (_, plan, bench, values) in enumerate(runs, 1)
+    }
+    return json.dumps({"criteria": criteria, "settings": settings})
+
+
+_USUAL = {"p": {"torque_nm": 100.0}}
+
+
+def test_beside_a_failed_run_one_of_its_plan_bench_and_values_comes_before_a_better_one() -> None:
+    runs: list[_Run] = [
+        (600.0, "p", "sim", {"torque_nm": 100.0}),
+        (50.0, "p", "sim", {"torque_nm": 20.0}),
+        (400.0, "p", "sim", {}),  # the plan's own value, which is the first run's
+        (60.0, "p", "other", {"torque_nm": 100.0}),
+    ]
+    found = best(1, passed=False, criteria=beside(*runs), usual=_USUAL)
+    assert (found["run"], found["other_values"], found["among"]) == (3, {}, 3)
+    found = best(1, passed=False, criteria=beside(*runs[:2]), usual=_USUAL)
+    assert (found["run"], found["other_values"]) == (2, {"torque_nm": 20.0})
+
+
+def test_a_run_that_passed_is_told_of_a_better_one_whatever_it_was_given() -> None:
+    runs: list[_Run] = [(400.0, "p", "sim", {}), (50.0, "copy", "other", {"torque_nm": 20.0})]
+    found = best(1, passed=True, criteria=beside(*runs), usual=_USUAL)
+    assert (found["run"], found["other_values"]) == (2, {"torque_nm": 20.0})
+
+
 @pytest.mark.slow
 def test_another_process_finds_it_in_what_the_database_has_of_the_runs(engine: Engine) -> None:
     """The service's loop would stand still meanwhile."""
@@ -91,7 +129,9 @@ def test_another_process_finds_it_in_what_the_database_has_of_the_runs(engine: E
     async def ask(run: int, *, passed: bool) -> dict[str, Any]:
         pool = WorkerPool(niceness=0)
         try:
-            return await pool.ask("best_run", run=run, passed=passed, criteria=listed.criteria_beside(run))
+            return await pool.ask(
+                "best_run", run=run, passed=passed, criteria=listed.criteria_beside(run), usual={}
+            )
         finally:
             process = pool._process
             pool.close()
@@ -99,9 +139,15 @@ def test_another_process_finds_it_in_what_the_database_has_of_the_runs(engine: E
                 await process.wait()
 
     best = asyncio.run(ask(numbers[0], passed=True))
-    assert best == {"run": numbers[2], "margin": pytest.approx(0.8), "criterion": "s.peak", "among": 3}
+    assert best == {
+        "run": numbers[2],
+        "margin": pytest.approx(0.8),
+        "criterion": "s.peak",
+        "among": 3,
+        "other_values": {},
+    }
     assert asyncio.run(ask(failed, passed=False)) == best
-    assert json.loads(listed.criteria_beside(9999)) == {"9999": []}
+    assert json.loads(listed.criteria_beside(9999)) == {"criteria": {"9999": []}, "settings": {}}
 
 
 def _over(runs: RunStore, peak: float, verdict: Literal["pass", "fail"] = "pass") -> int:

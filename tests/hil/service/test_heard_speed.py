@@ -12,9 +12,11 @@ from typing import Any
 import pytest
 
 from hil.api_schemas.api import LastSpeed
+from hil.app.worker.motor_speed import MOTOR_SPEED
 from hil.execution.motor_speed import Heard
 from hil.service import heard_speeds
 from hil.service.live.live_hub import LiveHub, last_speed
+from hil.service.queue import Queue
 from tests.hil.cli.test_sim_bench import serving
 from tests.hil.service.served import Served, served
 
@@ -91,6 +93,19 @@ def test_a_motor_that_a_run_left_turning_is_heard_until_it_stands(
     assert last is not None
     assert (last.speed_rad_s, last.turns) == (0.1, False)
     assert heard == [99.0]  # of an axle that stands no one asks any longer
+
+
+def test_the_services_own_listener_is_no_other_program_on_the_bench() -> None:
+    used = ""
+    bench: Any = SimpleNamespace(name="axle", stopped=lambda: "", used_by=lambda: used)
+    other: Any = SimpleNamespace(hold=lambda name: "", running=lambda service: [], service="me")
+    queue = Queue({"axle": bench}, other, other, other, Path(), lambda name: Path(), lambda name: None)
+    states = []
+    for command in (" ".join(MOTOR_SPEED), "hil bench monitor axle.toml"):
+        used = f"the bench is in use: process 7 ({command} axle.toml) holds can0"
+        queue._places["axle"].looked_s = -1e9
+        states.append(queue.state("axle"))
+    assert states == [("free", ""), ("in_use", used)]
 
 
 def test_a_motor_that_a_run_saw_stand_is_not_listened_to(

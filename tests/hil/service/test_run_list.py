@@ -116,6 +116,18 @@ def test_each_order_has_what_has_no_value_last(
     assert found(listed, **wanted) == runs
 
 
+def test_the_longest_come_first_and_what_has_not_ended_last(engine: Engine) -> None:
+    took_s = {1: 90.0, 2: 3601.5, 3: None, 4: 0.25, 5: 3601.25}
+    began = _BEGAN + datetime.timedelta(hours=23, minutes=59)  # past midnight, too
+    with sessionmaker(engine).begin() as session:
+        for number, seconds in took_s.items():
+            ended = None if seconds is None else began + datetime.timedelta(seconds=seconds)
+            session.execute(insert(_RUNS), [a_run(number, started_at=began, ended_at=ended)])
+    listed = RunList(engine)
+    assert found(listed, sort="duration") == [2, 5, 1, 4, 3]
+    assert found(listed, sort="duration", rising=True) == [4, 1, 5, 2, 3]
+
+
 def test_pages_neither_repeat_nor_leave_out(listed: RunList) -> None:
     pages = [found(listed, sort="dut", first=first, most=3) for first in (0, 3, 6, 9, 12)]
     assert sorted(run for page in pages for run in page) == list(range(1, 11))

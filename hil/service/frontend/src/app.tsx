@@ -19,6 +19,7 @@ import { FieldMessage } from "./ui/field-message.tsx";
 import { kindInWords } from "./ui/kinds.ts";
 import { Refusal } from "./ui/refusal.tsx";
 import { LostNotice } from "./views/bench-banner.tsx";
+import { StoppedBenches } from "./views/stopped-benches.tsx";
 import { View } from "./views/view.tsx";
 
 const STOP_POST_MS = 5000;
@@ -55,6 +56,7 @@ export function App(): JSX.Element {
       <main id="main" tabIndex={-1}>
         <UntakenStop />
         <LostNotice />
+        {who.state === "in" ? <StoppedBenches place={place} /> : null}
         <Refusal of={refusal} />
         {who.state === "in" ? <View place={place} /> : who.state === "out" ? <SignIn /> : <p class="quiet">{t("Asking the service …")}</p>}
       </main>

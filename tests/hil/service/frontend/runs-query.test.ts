@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import test from "node:test";
-import { queryFrom, sorted, toAddress, toService } from "../../../../hil/service/frontend/src/views/runs/runs-query.ts";
+import { queryFrom, sorted, ticked, toAddress, toService } from "../../../../hil/service/frontend/src/views/runs/runs-query.ts";
 import { tookOf } from "../../../../hil/service/frontend/src/views/runs/run-values.ts";
 
 test("a run took from its beginning to its end, and one that has not ended took nothing yet", () => {
@@ -37,4 +37,17 @@ test("a column that is chosen again turns round, another begins with its usual e
   assert.deepEqual([sorted(of(""), "run").rising, sorted(of("sort=ended"), "ended").rising], [true, true]);
   const byPlan = sorted(of("page=4"), "plan");
   assert.deepEqual([byPlan.sort, byPlan.rising, byPlan.page], ["plan", true, 1]);
+});
+
+test("durations are sorted by the service, the longest first", () => {
+  const query = sorted(of(""), "duration");
+  assert.deepEqual([query.rising, toService(query).get("sort"), of("sort=duration").sort], [false, "duration", "duration"]);
+});
+
+test("ticked runs stand in the address and are not asked for", () => {
+  const six = [1, 2, 3, 4, 5, 6].reduce(ticked, of("plan=short"));
+  assert.equal(toAddress(ticked(six, 2)).get("chosen"), "1,3,4,5,6");
+  assert.deepEqual(ticked(six, 7).chosen, [2, 3, 4, 5, 6, 7]);
+  assert.deepEqual(of("chosen=4,x,-1,4,2").chosen, [4, 2]);
+  assert.equal(toService(six).get("chosen"), null);
 });

@@ -76,7 +76,7 @@ def test_no_plan_is_chosen_beforehand_but_the_last_that_this_person_ran(
         expect(page.get_by_text("Largest torque asked for: 200")).to_contain_text("at the wheels")
         service.give("short", SHORT)
         service.over(service.queue("short"))
-        page.reload()
+        to(page, service, "benches/sim")
         expect(plan).to_have_value("short")
         page.goto("about:blank")
 
@@ -214,6 +214,8 @@ def test_runs_are_filtered_sorted_and_compared(page: playwright.Page, there: Ser
     page.get_by_role("button", name="Clear all").click()
     for run in (1, 2):
         page.get_by_label(f"Compare run {run}", exact=True).check()
+    page.reload()
+    expect(page.get_by_text("2 chosen")).to_be_visible()
     page.get_by_role("button", name="Compare", exact=True).click()
     expect(page.locator(".differs")).to_contain_text("torque_nm 150 instead of 100 N m")
     criteria = region(page, "Criteria").locator("table").first

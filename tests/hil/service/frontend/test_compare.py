@@ -55,7 +55,7 @@ def test_a_run_of_a_copy_is_compared_with_the_best_run_in_one_click(
     expect(group.nth(0)).to_have_attribute("label", "runs of short")
     expect(group.nth(1)).to_contain_text("2: copied")
     to(page, there, "runs/2")
-    page.get_by_role("link", name=re.compile("Compare with the best run \\(1, margin")).click()
+    page.get_by_role("link", name="Compare with the best run (1: other plan: short; margin").click()
     expect(heading(page, "Compare runs")).to_be_visible()
     expect(page).to_have_url(re.compile("runs=2,1"))
     differs = page.locator(".differs")
@@ -75,12 +75,28 @@ def test_the_limit_that_a_run_fails_is_drawn_beside_the_best_run(
     failed = there.queue("limited", values={"torque_nm": 150})
     assert [there.over(run)["verdict"] for run in (best, failed)] == ["pass", "fail"]
     to(page, there, f"runs/{failed}")
-    page.get_by_role("link", name=f"Compare with the best run ({best}: torque_nm = 50").click()
+    differs = f"({best}: other values: torque_nm = 50; margin"
+    page.get_by_role("link", name=f"Compare with the best run {differs}").click()
     plots = page.locator("figure.plot")
     torque, speed = plots.filter(has_text="shaft torque"), plots.filter(has_text="motor speed")
     expect(torque).to_contain_text("limit 130")
     expect_drawn(torque, "gain", "phase", "limit")
     expect(speed).not_to_contain_text("limit")
+
+
+def test_a_failed_run_is_compared_with_one_of_the_same_plan_bench_and_values(
+    page: playwright.Page, there: Served
+) -> None:
+    plan = SHORT.replace("name: short", "name: twice").replace("upper: 400", "upper: 130")
+    there.give("twice", plan)
+    there.over(there.queue("twice", values={"torque_nm": 50}))
+    same = there.queue("twice", values={"torque_nm": 90})
+    assert there.over(same)["verdict"] == "pass"
+    there.give("twice", plan.replace("to_nm: $torque_nm", "to_nm: 150"))
+    failed = there.queue("twice", values={"torque_nm": 90})
+    assert there.over(failed)["verdict"] == "fail"
+    to(page, there, f"runs/{failed}")
+    expect(page.get_by_role("link", name=f"Compare with the best run ({same}, margin")).to_be_visible()
 
 
 @pytest.mark.parametrize("refusals", [("404 (Not Found)",)])

@@ -140,3 +140,35 @@ def test_a_run_that_was_stopped_before_it_began_says_so_in_the_list(
     expect(region(page, "Latest runs")).to_contain_text("stopped before it began: emergency stop")
     to(page, there, "runs")
     expect(page.locator("tbody")).to_contain_text("stopped before it began: emergency stop")
+
+
+def test_a_stop_from_a_view_without_a_bench_is_shown_there_until_it_is_reset(
+    page: playwright.Page, there: Served
+) -> None:
+    there.over(there.queue())
+    to(page, there, "settings")
+    notice = region(page, "Emergency stop of sim")
+    expect(heading(page, "Settings")).to_be_visible()
+    expect(notice).to_have_count(0)
+    page.get_by_role("button", name="Emergency stop all benches").click()
+    expect(notice).to_contain_text("sim is stopped: its emergency stop stays until it is reset there.")
+    page.get_by_role("link", name="Runs", exact=True).click()
+    expect(notice).to_be_visible()
+    to(page, there, "runs/1")
+    expect(heading(page, "short")).to_be_visible()
+    notice.get_by_role("link", name="sim", exact=True).click()
+    expect(heading(page, "Bench sim Emergency stop")).to_be_visible()
+    expect(notice).to_have_count(0)  # the bench's own state says it
+    page.get_by_role("link", name="Runs", exact=True).click()
+    expect(notice).to_be_visible()
+    refuse_hard_to_use(page)
+    there.post("/benches/sim/reset")
+    expect(notice).to_have_count(0)
+
+
+def test_a_stop_that_a_bench_has_not_confirmed_is_shown_as_such(page: playwright.Page, there: Served) -> None:
+    bench = {**there.get("/benches/sim"), "state": "away", "stop_confirmed": False}
+    page.route("**/api/v1/benches", lambda route: route.fulfill(json=[bench]))
+    to(page, there, "runs")
+    expect(region(page, "Emergency stop of sim")).to_contain_text("the bench has NOT CONFIRMED it")
+    page.goto("about:blank")

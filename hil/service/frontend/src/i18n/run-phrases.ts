@@ -41,6 +41,7 @@ export const runPhrases = (words: Words): Phrase[] => [
   [/^(?<what>.+?) \((?<why>(?:bus '|the bench loop was delayed by ).+)\)$/s, (of) => t("{what} ({why})", of)],
   around(said("{complaint}, while the axle ran down"), words, "complaint"),
   [/^(?<name>.+): (?<reached>.+); response: (?<response>\w+)$/, (of) => t("{name}: {reached}; response: {response}", { ...of, reached: words(of["reached"] ?? ""), response: RESPONSES[of["response"] ?? ""] ?? of["response"] ?? "" })],
+  said("compiling for this machine, once: a minute or two"),
   // limits and what brings a channel back within them
   ofChannel(said("slope of {channel} reached {value}, the limit is {limit}"), "channel"),
   ofChannel(said("{channel} reached {value}, the limit is {limit}"), "channel"),

@@ -28,6 +28,7 @@ export function Wall({ bench }: { bench: string | null }): JSX.Element {
       </header>
       {old ? <p class="alarm" role="alert">{t("NOT CURRENT: no answer of the service for {time}", { time: roughly(ageS) })}</p> : null}
       {missing ? <p class="alarm">{t("The service has no bench of this name.")}</p> : null}
+      {missing ? <p><a href={to.wall()}>{t("All benches")}</a></p> : null}
       {atMs && !missing && !shown.length ? <p>{t("No bench yet.")}</p> : null}
       <ul>{shown.map((one) => <Card key={one.bench.name} of={one} nowMs={now} alone={bench !== null} />)}</ul>
     </div>

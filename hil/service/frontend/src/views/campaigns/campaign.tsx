@@ -4,12 +4,13 @@ import type { ComponentChildren, JSX } from "preact";
 import { API } from "../../api/client.ts";
 import type { Campaign, CampaignFindings } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
-import { useData } from "../../data.ts";
+import { isMissing, useData } from "../../data.ts";
 import { percent } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
 import { t } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { Badge, Facts, FileLink, Heading, Loaded, Moment, Section } from "../../ui/parts.tsx";
+import { NoneThere } from "../none-there.tsx";
 import { CampaignActions, Progress, Shares, stateOf } from "./campaign-parts.tsx";
 import { Findings } from "./findings.tsx";
 
@@ -18,6 +19,7 @@ const NAMES: Record<string, string> = { "report.html": t("report"), "report.pdf"
 
 export function CampaignView({ id }: { id: number }): JSX.Element {
   const campaign = useData<Campaign>(`/campaigns/${id}`, AGAIN_MS);
+  if (isMissing(campaign)) return <NoneThere kind="campaign" name={id} />;
   return <Loaded whole of={campaign} what={t("campaign {number}", { number: id })}>{(found) => <Found campaign={found} />}</Loaded>;
 }
 

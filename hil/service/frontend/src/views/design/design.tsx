@@ -3,12 +3,13 @@
 import type { JSX } from "preact";
 import { useMemo, useState } from "preact/hooks";
 import type { CloudData, Model } from "../../api/types.ts";
+import { to } from "../../addresses.ts";
 import { useData } from "../../data.ts";
-import { t } from "../../i18n/text.ts";
+import { t, tx } from "../../i18n/text.ts";
 import { useQuery } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { kindInWords } from "../../ui/kinds.ts";
-import { Heading, Section } from "../../ui/parts.tsx";
+import { Heading, linkTo, Section } from "../../ui/parts.tsx";
 import { roleOf } from "../../plot/frame.ts";
 import { CarFigures, ChooseCars } from "./car-figures.tsx";
 import { carsFrom, spreadFrom, spreadText, toleranceOf, USUAL_CARS, type Spread } from "./car-spread.ts";
@@ -31,7 +32,7 @@ export function Design(): JSX.Element {
 }
 
 function Studio(): JSX.Element {
-  const models = useData<Model[]>("/models").data ?? [];
+  const known = useData<Model[]>("/models").data, models = known ?? [];
   const [query, setQuery] = useQuery();
   const put = (name: string, value: string) => {
     const next = new URLSearchParams(location.search);
@@ -50,7 +51,7 @@ function Studio(): JSX.Element {
           </select>
         </label>
       </div>
-      {model ? <OnModel key={model} model={model} drafts={draftsFrom(query.get("d"))} onDrafts={(drafts) => put("d", draftsText(drafts))} query={query} put={put} /> : <p class="quiet">{t("Loading models …")}</p>}
+      {known && model && !models.some((one) => one.name === model) ? <p class="bad" role="alert">{tx("There is no model '{name}': choose another one here, or give it among <a>all models</a>.", { name: model, a: linkTo(to.list("models")) })}</p> : model ? <OnModel key={model} model={model} drafts={draftsFrom(query.get("d"))} onDrafts={(drafts) => put("d", draftsText(drafts))} query={query} put={put} /> : <p class="quiet">{t("Loading models …")}</p>}
     </>
   );
 }

@@ -37,6 +37,7 @@ export function DraftPlots({ drafts, around }: { drafts: NamedDraft[]; around: A
   const cars = around?.data ?? null, role = around?.role ?? "";
   const sensitivities = useMemo(() => [...(cars ? carsSensitivities(role, cars) : []), ...found.flatMap(sensitivitiesOf)], [found, cars, role]);
   const cloud = useMemo((): Cloud | null => (cars ? { role, cars: cars.loops, worst: cars.worst } : null), [cars, role]);
+  if (!found.length && drafts.every(({ drawn }) => drawn.error)) return <></>; // the table below says why
   if (!found.length) return <p class="quiet">{t("Reading the model …")}</p>;
   const worst = found.map(({ data }) => data.margins.sensitivity_peak ?? 0), all = [...worst, cars?.cars[cars.worst]?.margins.sensitivity_peak ?? 0];
   const margins = found.map(({ name, data }) => t("{name}: gain margin {gain}, phase margin {phase}", { name, gain: figure(data.margins.gain_margin_db, "dB"), phase: figure(data.margins.phase_margin_deg, "°") })).join("; ");

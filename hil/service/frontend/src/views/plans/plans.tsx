@@ -18,7 +18,6 @@ import { UseController } from "../design/use-controller.tsx";
 import { EditPlan, PlanEditor } from "./plan-editor.tsx";
 import { durationOf, torquesOf } from "./plan-facts.ts";
 import { renamed, START } from "./plan-text.ts";
-import { valuesFrom } from "./start-values.ts";
 import { StartPlan } from "./start-plan.tsx";
 import { GiveFile } from "../given/give-file.tsx";
 import { NoneThere } from "../none-there.tsx";
@@ -91,7 +90,7 @@ function Found({ plan, onSaved }: { plan: Plan; onSaved: () => void }): JSX.Elem
         </div>
         {may("operator") ? (
           <div>
-            <Section title={t("Start it")} label="start"><StartPlan plan={plan.name} from={valuesFrom(query)} /></Section>
+            <Section title={t("Start it")} label="start"><StartPlan plan={plan.name} /></Section>
             {may("engineer") ? <Section title={t("With another controller")} label="controller"><p class="quiet">{t("A copy of the plan loads it; the copy is started with the same values.")}</p><UseController plan={plan.name} query={query.toString()} /></Section> : null}
           </div>
         ) : null}

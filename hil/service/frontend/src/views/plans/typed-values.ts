@@ -2,7 +2,7 @@
 
 import type { Plan } from "../../api/types.ts";
 import { t } from "../../i18n/text.ts";
-import { POINTED, numberIn, whyNoNumber, type Bounds } from "../../ui/typed-numbers.ts";
+import { POINTED, numberIn, pointed, whyNoNumber, type Bounds } from "../../ui/typed-numbers.ts";
 
 export type Variable = Plan["variables"][string];
 
@@ -26,3 +26,10 @@ export function wrongIn(plan: Plan | null | undefined, texts: Texts): string {
 
 // Whether the plan's own values stand.
 export const areUsual = (plan: Plan, texts: Texts): boolean => Object.entries(valuesOf(plan, texts)).every(([name, value]) => value === plan.variables[name]?.default);
+
+// Numbers that are not the plan's own, with decimal points: what somebody has changed.
+export const changedIn = (plan: Plan, texts: Texts): Texts =>
+  Object.fromEntries(Object.entries(plan.variables).flatMap(([name, { default: usual }]) => {
+    const text = pointed(texts[name] ?? "");
+    return text === null || Number(text) === usual ? [] : [[name, text]];
+  }));

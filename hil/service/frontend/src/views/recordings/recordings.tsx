@@ -5,7 +5,7 @@ import { useState } from "preact/hooks";
 import { API, ask, post } from "../../api/client.ts";
 import type { Recording } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
-import { attempt, useData, type Asked } from "../../data.ts";
+import { attempt, isMissing, useData, type Asked } from "../../data.ts";
 import { bytes, duration, percent, whole } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
 import { t } from "../../i18n/text.ts";
@@ -13,6 +13,7 @@ import { agreed } from "../../question.ts";
 import { go } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { Badge, Facts, Heading, Loaded, Moment, Scroll, Section } from "../../ui/parts.tsx";
+import { NoneThere } from "../none-there.tsx";
 import { Curves } from "./curves.tsx";
 import { ColumnsField, GiveRecording } from "./give-recording.tsx";
 import { columnsFrom } from "./send-recording.ts";
@@ -57,6 +58,7 @@ function State({ of: one }: { of: Recording }): JSX.Element {
 
 export function RecordingView({ id }: { id: number }): JSX.Element {
   const one = useData<Recording>(`/recordings/${id}`, AGAIN_MS);
+  if (isMissing(one)) return <NoneThere kind="recording" name={id} />;
   return <Loaded whole of={one} what={t("recording {number}", { number: id })}>{(found) => <Found key={found.state} recording={found} onChanged={one.again} />}</Loaded>;
 }
 

@@ -9,12 +9,10 @@ import { kindInWords } from "../../ui/kinds.ts";
 import { NumberInput } from "../../ui/number-field.tsx";
 import { isTooLong, LimitedField } from "../../ui/too-long.tsx";
 import { whyInvalid } from "../../ui/why-invalid.ts";
-import { FILTERS, type Filter, type RunsQuery } from "./runs-query.ts";
+import { FILTERS, STATES, VERDICTS, type Filter, type RunsQuery } from "./runs-query.ts";
 
 const LONGEST_WORDS = 200;
 const NAMES: Record<Filter, string> = { plan: t("Plan"), bench: t("Bench"), dut: t("Device"), verdict: t("Verdict"), requested_by: t("Asked for by"), state: t("State"), tag: t("Tag") };
-const VERDICTS = ["pass", "fail", "error", "done"];
-const STATES = ["waiting_approval", "queued", "running", "ended", "interrupted", "cancelled"];
 const WAIT_MS = 300;
 
 export function RunFilters({ query, onChange }: { query: RunsQuery; onChange: (query: RunsQuery) => void }): JSX.Element {

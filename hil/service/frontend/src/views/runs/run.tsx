@@ -16,7 +16,9 @@ import { useStopOf } from "../../shell/stop.tsx";
 import { useStore } from "../../store.ts";
 import { Badge, Facts, Heading, Loaded, Moment, Section, verdictOf } from "../../ui/parts.tsx";
 import { Banner, ResetOf } from "../bench-banner.tsx";
+import { StoppedBench } from "../stopped-benches.tsx";
 import { againWith } from "../plans/start-values.ts";
+import { NoneThere } from "../none-there.tsx";
 import { Criteria } from "../criteria.tsx";
 import { limitsOf } from "./failed-limits.ts";
 import { Notes } from "./notes.tsx";
@@ -36,6 +38,7 @@ export function RunView({ run: id }: { run: number }): JSX.Element {
   const run = useData<Run>(`/runs/${id}`, AGAIN_MS);
   const name = run.data?.bench ?? "", bench = useData<Bench>(name ? `/benches/${encodeURIComponent(name)}` : null, AGAIN_MS);
   useStopOf(name, !name ? null : isMissing(bench) ? false : bench.loading && !bench.data ? null : true);
+  if (isMissing(run)) return <NoneThere kind="run" name={id} />;
   return <Loaded whole of={run} what={t("run {run}", { run: id })}>{(found) => <Found key={found.id} run={found} bench={bench.data} />}</Loaded>;
 }
 
@@ -54,7 +57,7 @@ function Found({ run, bench }: { run: Run; bench: Bench | null }): JSX.Element {
       {isLive && state?.running?.id === run.id ? <Banner state={state} /> : null}
       {WAITING.includes(run.state) ? <WhyItWaits run={run} /> : null}
       {isOver ? <Outcome run={run} view={view.data} /> : null}
-      {isOver && !isPassed(run) && bench ? <ResetOf bench={bench} /> : null}
+      {isOver && bench ? isPassed(run) ? <StoppedBench bench={bench} /> : <ResetOf bench={bench} /> : null}
       {isOver ? <Unsettled run={run} view={view.data} /> : null}
       <RunFacts run={run} />
       <RunActions run={run} />

@@ -4,43 +4,43 @@ import type { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import type { FoundRun, FoundRuns } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
-import { useData } from "../../data.ts";
+import { isMissing, useData } from "../../data.ts";
 import { figure, limitText, whole } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
 import { t, tn, tx } from "../../i18n/text.ts";
 import { go, useQuery } from "../../router.ts";
 import { Badge, Heading, linkTo, Moment, Scroll, verdictOf } from "../../ui/parts.tsx";
 import { RunFilters } from "./run-filters.tsx";
-import { PAGE, queryFrom, sorted, toAddress, toService, type Order, type RunsQuery } from "./runs-query.ts";
+import { impossibleIn, PAGE, queryFrom, sorted, ticked, toAddress, toService, type Order, type RunsQuery } from "./runs-query.ts";
 import { tookOf, valuesOf } from "./run-values.ts";
 
 const AGAIN_MS = 10_000;
-const MOST_COMPARED = 6;
 
 export function Runs(): JSX.Element {
   const [address, setAddress] = useQuery();
-  const query = queryFrom(address);
-  const found = useData<FoundRuns>(`/run-list?${toService(query)}`, AGAIN_MS);
-  const [shown, setShown] = useState<FoundRuns | null>(null); // stays while the next page is asked for
-  const [chosen, setChosen] = useState<number[]>([]);
-  useEffect(() => { if (found.data) setShown(found.data); }, [found.data]);
+  const query = queryFrom(address), { chosen } = query, impossible = impossibleIn(query);
+  const found = useData<FoundRuns>(impossible ? null : `/run-list?${toService(query)}`, AGAIN_MS);
+  const [kept, setKept] = useState<FoundRuns | null>(null), shown = impossible || (isMissing(found) && !found.loading) ? null : kept; // stays while the next page is asked for
+  useEffect(() => { if (found.data) setKept(found.data); }, [found.data]);
   const set = (changed: RunsQuery, step = true) => setAddress(toAddress(changed), step);
-  const choose = (run: number) => setChosen(chosen.includes(run) ? chosen.filter((one) => one !== run) : [...chosen, run].slice(-MOST_COMPARED));
   const total = shown?.total ?? 0, pages = Math.max(1, Math.ceil(total / PAGE));
   return (
     <>
       <Heading>{t("Runs")}</Heading>
       <RunFilters query={query} onChange={(changed) => set({ ...changed, page: 1 })} />
       <div class="part-head">
-        <p aria-live="polite">{shown ? tn("{count} run", "{count} runs", total) : "…"}{found.error ? <span class="bad"> <English>{found.error.message}</English></span> : null}</p>
+        <p aria-live="polite">
+          {impossible ? <NoSuch of={impossible} /> : shown ? tn("{count} run", "{count} runs", total) : found.error ? null : "…"}
+          {found.error ? <span class="bad"> <English>{found.error.message}</English></span> : null}{isMissing(found) ? <> <a href={to.list("runs")}>{t("All runs")}</a></> : null}
+        </p>
         <span class="buttons small">
           {chosen.length ? <span class="quiet">{t("{count} chosen", { count: chosen.length })}</span> : null}
           <button type="button" disabled={chosen.length < 2} onClick={() => go(`${to.list("compare")}?runs=${chosen.join(",")}`)}>{t("Compare")}</button>
-          {chosen.length ? <button type="button" class="plain" onClick={() => setChosen([])}>{t("Choose none")}</button> : null}
+          {chosen.length ? <button type="button" class="plain" onClick={() => set({ ...query, chosen: [] }, false)}>{t("Choose none")}</button> : null}
         </span>
       </div>
-      {shown && total === 0 ? <p class="quiet">{[...toAddress({ ...query, page: 1, sort: "run", rising: false })].length ? t("No run passes these filters.") : tx("No run yet. A plan is started at <bench>a bench</bench> or from <plan>its own page</plan>.", { bench: linkTo(to.list("benches")), plan: linkTo(to.list("plans")) })}</p> : null}
-      {shown && total > 0 ? <Table runs={shown.runs} query={query} chosen={chosen} busy={found.loading} onChoose={choose} onSort={(by) => set(sorted(query, by))} /> : null}
+      {shown && total === 0 ? <p class="quiet">{[...toAddress({ ...query, page: 1, sort: "run", rising: false, chosen: [] })].length ? t("No run passes these filters.") : tx("No run yet. A plan is started at <bench>a bench</bench> or from <plan>its own page</plan>.", { bench: linkTo(to.list("benches")), plan: linkTo(to.list("plans")) })}</p> : null}
+      {shown && total > 0 ? <Table runs={shown.runs} query={query} chosen={chosen} busy={found.loading} onChoose={(run) => set(ticked(query, run), false)} onSort={(by) => set(sorted(query, by))} /> : null}
       {pages > 1 ? (
         <nav class="row pages" aria-label={t("Pages of runs")}>
           <button type="button" disabled={query.page <= 1} onClick={() => set({ ...query, page: query.page - 1 })}>{t("Previous")}</button>
@@ -52,7 +52,12 @@ export function Runs(): JSX.Element {
   );
 }
 
-const COLUMNS: [Order | "", string, string][] = [["run", t("run"), "number"], ["plan", t("plan"), ""], ["verdict", t("verdict"), ""], ["bench", t("bench"), ""], ["dut", t("device"), ""], ["ended", t("ended"), ""], ["", t("duration"), "number"], ["", t("by"), ""]];
+function NoSuch({ of: { filter, name } }: { of: NonNullable<ReturnType<typeof impossibleIn>> }): JSX.Element {
+  const shown = { name, a: linkTo(to.list("runs")) };
+  return <span class="bad">{filter === "verdict" ? tx("There is no verdict '{name}'. Choose one of the list, or see <a>all runs</a>.", shown) : tx("There is no state '{name}'. Choose one of the list, or see <a>all runs</a>.", shown)}</span>;
+}
+
+const COLUMNS: [Order | "", string, string][] = [["run", t("run"), "number"], ["plan", t("plan"), ""], ["verdict", t("verdict"), ""], ["bench", t("bench"), ""], ["dut", t("device"), ""], ["ended", t("ended"), ""], ["duration", t("duration"), "number"], ["", t("by"), ""]];
 
 interface TableOptions {
   runs: FoundRun[];

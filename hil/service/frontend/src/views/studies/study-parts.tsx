@@ -4,7 +4,7 @@ import type { ComponentChildren, JSX } from "preact";
 import { API, ask, getText, post } from "../../api/client.ts";
 import type { Run, Study } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
-import { attempt, useData } from "../../data.ts";
+import { attempt, isMissing, useData } from "../../data.ts";
 import { English } from "../../i18n/english.tsx";
 import { t, tn } from "../../i18n/text.ts";
 import { agreed } from "../../question.ts";
@@ -12,6 +12,7 @@ import { go } from "../../router.ts";
 import { useMay } from "../../session.ts";
 import { kindInWords } from "../../ui/kinds.ts";
 import { Badge, Facts, FileLink, Heading, Loaded, Moment, Scroll, Section } from "../../ui/parts.tsx";
+import { NoneThere } from "../none-there.tsx";
 import { useRecordings } from "../recordings/recordings.tsx";
 
 const AGAIN_MS = 2000;
@@ -74,6 +75,7 @@ export function ChooseRecordings({ legend, chosen, onChange, without = [] }: { l
 
 export function StudyPage({ id, kind, children }: { id: number; kind: Kind; children: (study: Study) => ComponentChildren }): JSX.Element {
   const study = useData<Study>(`/studies/${id}`, AGAIN_MS);
+  if (isMissing(study)) return <NoneThere kind={kind === "diagnosis" || kind === "identification" ? kind : "tuning"} name={id} />;
   return <Loaded whole of={study} what={`${kindInWords(kind)} ${id}`}>{(found) => <Found study={found}>{children(found)}</Found>}</Loaded>;
 }
 
