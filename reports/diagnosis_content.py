@@ -125,7 +125,7 @@ def parts(found: Diagnosis) -> list[Part]:
             "Gap per channel",
             "Rms of measured minus simulated as a share of the rms of the measured channel around its "
             "mean. The noise floor is the same for the noise that is proven: by the spectrum above all "
-            f"modes, by rest, by repeats of a request, or as stated.{_what_stays(found)}",
+            f"modes, by the distance of readings, or as stated.{_what_stays(found)}",
             _gaps(found),
         ),
         Part(
