@@ -105,16 +105,16 @@ LOGGED: Feedback = LoggedFeedback()
 @contextlib.contextmanager
 def telling_of_compilation(say: Callable[[str], None]) -> Iterator[None]:
     """Say why nothing moves for a while, when a function is compiled here or in the process of the bench."""
-    told = _Told(lambda: say(COMPILING))
+    lines = _EachLine(lambda: say(COMPILING))
     compiler = logging.getLogger(_COMPILER)
-    compiler.addHandler(told)
+    compiler.addHandler(lines)
     try:
         yield
     finally:
-        compiler.removeHandler(told)
+        compiler.removeHandler(lines)
 
 
-class _Told(logging.Handler):
+class _EachLine(logging.Handler):
     """Calls for each line."""
 
     def __init__(self, tell: Callable[[], None]) -> None:
