@@ -87,11 +87,12 @@ def judged(of: Judged, notes: tuple[str, ...]) -> Outcome:
     best, at, shares = _worth_telling(of, done.best)
     _swapped(done, best)
     likelier = max((one for one in done.found.values() if len(one.names) == len(best.names)), key=done.score)
-    if done.score(likelier) > done.score(best):
+    near_noise = done.problem.is_noise(best.point.errors)
+    if near_noise and done.score(likelier) > done.score(best):
         best, at, shares = _worth_telling(of, likelier)
-    # more names than are worth telling decide nothing
-    most = len(best.names) or max(len(names) for names in done.found)
-    candidates = [one for one in done.found.values() if len(one.names) <= most]
+    candidates = list(done.found.values())
+    if near_noise and best.names:  # more names than are worth telling decide nothing
+        candidates = [one for one in candidates if len(one.names) <= len(best.names)]
     values = done.problem.powers(best.point.errors, once=True).values(done.problem.noise)
     weights = _weights(done.problem, candidates, values)
     rivals = _alike(done, best, candidates, weights)
