@@ -79,8 +79,7 @@ def explain_gap(
         fitted,
         held_out,
     )
-    notes = tuple(note for one in series for note in one.notes)
-    found = as_far_as_known(of, notes, unfinished) if unfinished else judged(of, notes)
+    found = as_far_as_known(of, unfinished) if unfinished else judged(of)
     return replace(found, seconds=time.perf_counter() - began)
 
 

@@ -1,9 +1,9 @@
-"""What was found, in the words of diagnosis.json (docs/reference/diagnosis.md)."""
+"""What was found."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -87,25 +87,22 @@ class Replay:
 class Outcome:
     """All that `explain_gap` has to say.
 
-    `numbers` by name: base, found, standard error. `something_else` is what the model given back leaves of
-    what the numbers alone leave beyond noise, recordings held out included (0 to 1). `curves` show
-    what stays. `noise` (3,) is the proven standard deviation of one sample, NaN where a channel was not
-    recorded. `as_likely` are models drawn from what the fit knows of its numbers. `steadied` is a drag in
-    the model without a name: it keeps it from drifting where recordings do not excite what would name it.
-    `unfinished` says why the search ended before it was through, if it did: names are candidates then.
+    `numbers` by name: base, found, standard error. `curves` show what stays. `noise` (3,) is the proven
+    standard deviation of one sample, NaN where a channel was not recorded. `as_likely` are models drawn from
+    what the fit knows of its numbers. `steadied` is a drag in the model without a name: it keeps it from
+    drifting where recordings do not excite what would name it. `unfinished` says why the search ended before
+    it was through, if it did: names are candidates then.
     """
 
     verdict: Verdict
     effects: tuple[Named, ...]
     alternatives: tuple[Named, ...]
-    something_else: float
     numbers: dict[str, tuple[float, float, float]]
     base_was_far: bool
     gap: dict[str, Gap]
     holdout_gap: dict[str, Gap]
     model: Model
     curves: tuple[Curve, ...]
-    notes: tuple[str, ...]
     seconds: float
     noise: Array
     as_likely: tuple[Model, ...]
@@ -113,32 +110,3 @@ class Outcome:
     held_out: tuple[Replay, ...]
     steadied: EffectUse | None = None
     unfinished: str = ""
-
-    def as_json(self) -> dict[str, Any]:
-        """The content of `diagnosis.json`."""
-        key = "start" if self.base_was_far else "parameter_updates"
-        return {
-            "verdict": self.verdict,
-            "effects": [_as_json(one) for one in self.effects],
-            "alternatives": [_as_json(one) for one in self.alternatives],
-            "something_else": round(self.something_else, 3),
-            key: {n: {"from": a, "to": b, "standard_error": s} for n, (a, b, s) in self.numbers.items()},
-            "gap": {name: _gap(one) for name, one in self.gap.items()},
-            "holdout_gap": {name: _gap(one) for name, one in self.holdout_gap.items()},
-            "notes": list(self.notes),
-        }
-
-
-def _as_json(one: Named) -> dict[str, Any]:
-    return {
-        "id": one.id,
-        "parameters": dict(one.use.values),
-        "standard_error": one.standard_error,
-        "confidence": round(one.confidence, 3),
-        **({"class": list(one.alike)} if one.alike else {}),
-        **({"separating_test": one.separating_test} if one.separating_test else {}),
-    }
-
-
-def _gap(one: Gap) -> dict[str, float]:
-    return {"before": one.base, "numbers": one.numbers, "after": one.after, "noise_floor": one.noise_floor}

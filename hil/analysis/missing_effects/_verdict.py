@@ -59,7 +59,7 @@ class Judged:
     held_out: tuple[Replay, ...]
 
 
-def as_far_as_known(of: Judged, notes: tuple[str, ...], why: str) -> Outcome:
+def as_far_as_known(of: Judged, why: str) -> Outcome:
     """The outcome of a search that was not through: names are candidates, the model has none of them."""
     done = of.done
     alone, candidates = done.found.get((), done.best), list(done.found.values())
@@ -68,15 +68,15 @@ def as_far_as_known(of: Judged, notes: tuple[str, ...], why: str) -> Outcome:
     weights = _weights(done.problem, candidates, values)
     numbers, model = numbers_of(at, of.asked), alone.point.hypothesis.model()
     return Outcome(
-        "unknown", (), tuple(_others(of, alone, candidates, weights)), 1.0, numbers, is_far(numbers, done),
+        "unknown", (), tuple(_others(of, alone, candidates, weights)), numbers, is_far(numbers, done),
         *of.gaps(model), model,
-        curves_of(alone.point.hypothesis, done.problem.series), notes, 0.0,
+        curves_of(alone.point.hypothesis, done.problem.series), 0.0,
         done.problem.noise * np.sqrt(done.problem.series[0].block), (), of.fitted, of.held_out,
         unfinished=why,
     )  # fmt: skip
 
 
-def judged(of: Judged, notes: tuple[str, ...]) -> Outcome:
+def judged(of: Judged) -> Outcome:
     """The outcome of a search."""
     done = of.done
     likeliest = done.best
@@ -107,7 +107,6 @@ def judged(of: Judged, notes: tuple[str, ...]) -> Outcome:
         effects += mismatches(done, numbers, best, as_the_base)
     if done.problem.is_noise(best.point.errors):
         effects += _roundings(done, float(weights[candidates.index(best)]))
-    something_else = _remains(of, done.found[()], best) if best.names else 0.0
     verdict: Verdict = "unknown"
     if effects:
         verdict = "named"
@@ -117,9 +116,9 @@ def judged(of: Judged, notes: tuple[str, ...]) -> Outcome:
     given, steadied = best.point.hypothesis, held_against_drift(done.problem, best.point)
     model = (given.with_term(steadied) if steadied else given).model()
     return Outcome(
-        verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), something_else, numbers, far,
+        verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), numbers, far,
         *of.gaps(model), model,
-        curves_of(best.point.hypothesis, done.problem.series), notes, 0.0,
+        curves_of(best.point.hypothesis, done.problem.series), 0.0,
         done.problem.noise * np.sqrt(done.problem.series[0].block), at.drawn(_DRAWN), of.fitted, of.held_out,
         steadied,
     )  # fmt: skip

@@ -88,13 +88,13 @@ def band_of_gap(traces: Sequence[Trace], noise: Array, simulated: Sequence[Array
     return f"it lies between {low:.2g} and {high:.2g} Hz"
 
 
-def _common_frequency(steps: Sequence[float], segment: int = WORDS_SEGMENT) -> Array:
+def _common_frequency(steps: Sequence[float]) -> Array:
     """Frequencies in Hz that recordings with these sample times have in common."""
-    return np.linspace(0.0, 0.5 / max(steps), segment // 2 + 1)
+    return np.linspace(0.0, 0.5 / max(steps), WORDS_SEGMENT // 2 + 1)
 
 
-def _density_at(frequency: Array, values: Array, step: float, segment: int = WORDS_SEGMENT) -> Array:
+def _density_at(frequency: Array, values: Array, step: float) -> Array:
     """Power density of `values` (n x channels), sampled every `step` seconds, at `frequency`."""
-    length = min(segment, len(values))
+    length = min(WORDS_SEGMENT, len(values))
     own, density = power_density(values, step, length, about_mean=False)
     return np.column_stack([np.interp(frequency, own, column) for column in density.T])
