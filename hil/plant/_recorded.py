@@ -22,6 +22,7 @@ _DIGITS = 1e-6  # of a channel's rms: its noise at least
 _AHEAD = (0.0, 0.5, -0.5)  # of how far a vehicle may be: where it is looked for, as a play has many minima
 _ROUNDS = 8  # outputs change nearly linearly with a start
 _HALVED = 4  # times is a step halved that leads nowhere
+_SETTLED = 1e-6  # of the squares: a step that takes off less is the last one
 _STEP = 1e-3  # of a channel's rms, for derivatives
 _SMALL = 0.02  # the same of what nobody reads, of how far that may be
 _FAR = 1e9  # noises: a model that runs away is so far off, not infinitely far
@@ -106,7 +107,7 @@ def _least(
     counts: Array,
     start: Array,
 ) -> Array:
-    """The likeliest start, by Gauss and Newton's steps from another.
+    """The likeliest start, by Gauss and Newton's steps from another, with slopes as long as they lead on.
 
     Args:
         unsure: how far `first` may be off.
@@ -121,18 +122,27 @@ def _least(
 
     start = start.astype(float)
     left = rows(start)
+    solve: Array | None = None
     for _ in range(_ROUNDS):
-        slopes = np.stack([(rows(start + one) - left) / one.sum() for one in np.diag(steps)[free]])
+        if fresh := solve is None:
+            slopes = np.stack([(rows(start + one) - left) / one.sum() for one in np.diag(steps)[free]])
+            solve = np.linalg.pinv(slopes.T)
         step = np.zeros(len(start))
-        step[free] = -np.linalg.lstsq(slopes.T, left, rcond=None)[0]
-        for _ in range(_HALVED):
+        step[free] = -solve @ left
+        for _ in range(_HALVED if fresh else 1):
             after = rows(start + step)
             if after @ after < left @ left:
                 break
             step *= 0.5  # contact comes and goes on the way
         else:
-            break
+            if fresh:
+                break
+            solve = None  # slopes from further away no longer lead anywhere
+            continue
+        had, has = left @ left, after @ after
         start, left = start + step, after
+        if had - has < _SETTLED * has:
+            break
     return start
 
 

@@ -9,7 +9,6 @@ from hil.analysis.missing_effects._fit import (
     ROUNDS,
     Point,
     fit,
-    left_to_gain,
     linearised,
     point_at,
     with_better_starts,
@@ -19,6 +18,7 @@ from hil.analysis.missing_effects._odds import Candidate
 from hil.analysis.missing_effects._orders import count_of_orders
 from hil.analysis.missing_effects._phase import tracked
 from hil.analysis.missing_effects._problem import Problem
+from hil.analysis.missing_effects._projection import Projection
 from hil.analysis.missing_effects._screen import may_join
 from hil.analysis.missing_effects._spectrum import white
 from hil.core.effects import EFFECTS
@@ -88,11 +88,9 @@ class Candidates:
         return self.problem.weighed_by(powers.spectrum(self.problem.noise))
 
     def promised(self, candidate: Candidate) -> float:
-        """Growth of log L that its numbers may still bring a candidate, weighed by what it leaves.
-
-        Twice the first order: a misfit that shrinks weighs what stays the more.
-        """
-        return 2.0 * left_to_gain(linearised(self.weighed_as(candidate), candidate.point))
+        """Growth of log L that its numbers may still bring a candidate, weighed by what it leaves."""
+        problem = self.weighed_as(candidate)
+        return Projection(problem, linearised(problem, candidate.point)).alone.gain
 
     def fitted(
         self,

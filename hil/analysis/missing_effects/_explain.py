@@ -16,16 +16,14 @@ from hil.analysis.missing_effects._fit import Point, point_at, with_better_start
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._noise import proven_noise
 from hil.analysis.missing_effects._odds import Candidate
-from hil.analysis.missing_effects._outcome import Gap, Outcome, Replay
+from hil.analysis.missing_effects._outcome import Outcome, Replay
 from hil.analysis.missing_effects._problem import Problem, problem_of
 from hil.analysis.missing_effects._search import search
 from hil.analysis.missing_effects._series import series_of
 from hil.analysis.missing_effects._spectrum import white
 from hil.analysis.missing_effects._verdict import Judged, as_far_as_known, judged
-from hil.core.channels import OUTPUTS
 from hil.core.model import Model
 from hil.core.recording import Recording
-from hil.core.runtime.thread_map import map_on_threads
 
 Array = npt.NDArray[np.float64]
 
@@ -71,14 +69,7 @@ def explain_gap(
     shown = _Shown(problem, unseen, done)
     fitted = tuple(Replay(one) for one in problem.series)
     held_out = tuple(Replay(one) for one in unseen.series) if holdout else ()
-    of = Judged(
-        model,
-        done,
-        shown.left,
-        lambda given: (shown.gaps(fitted, given), shown.gaps(held_out, given) if holdout else {}),
-        fitted,
-        held_out,
-    )
+    of = Judged(model, done, shown.left, fitted, held_out)
     found = as_far_as_known(of, unfinished) if unfinished else judged(of)
     return replace(found, seconds=time.perf_counter() - began)
 
@@ -126,26 +117,3 @@ class _Shown:
         both = (self.problem,) if self.unseen is self.problem else (self.problem, self.unseen)
         whole = replace(self.problem, series=tuple(s for one in both for s in one.series))
         return whole.mean_square([e for one in both for e in self.point(one, hypothesis).errors])
-
-    def gaps(self, replays: Sequence[Replay], given: Model) -> dict[str, Gap]:
-        """Of the base, the numbers alone and the model given back."""
-        three = (self.problem.model, self.done.found[()].point.hypothesis.model(), given)
-        each = map_on_threads(lambda one: [one.errors(model) for model in three], replays)
-        errors = [np.concatenate(parts) for parts in zip(*each, strict=True)]
-        measured = np.concatenate([one.series.measured for one in replays])
-        spread = np.sqrt(_mean((measured - _mean(measured)) ** 2))
-        rms = [np.sqrt(_mean(one**2)) / spread for one in errors]
-        return {
-            name: Gap(
-                float(rms[0][i]), float(rms[1][i]), float(rms[2][i]), float(self.problem.noise[i] / spread[i])
-            )
-            for i, name in enumerate(OUTPUTS)
-            if np.isfinite(spread[i])
-        }
-
-
-def _mean(values: Array) -> Array:
-    """Mean over rows of what was recorded, NaN where nothing was."""
-    there = np.isfinite(values)
-    count = there.sum(axis=0)
-    return np.where(count > 0, np.where(there, values, 0.0).sum(axis=0) / np.maximum(count, 1), np.nan)

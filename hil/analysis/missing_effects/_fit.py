@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -81,6 +81,14 @@ class Linearised:
             if one.term == term and one.name == name:
                 return float(abs(one.slope(0.0)) * np.sqrt(max(self.covariance[index, index], 0.0)))
         return float("nan")
+
+    def holding(self, held: Sequence[bool]) -> Linearised:
+        """The same, some coordinates held."""
+        free = ~np.array(held, dtype=bool)
+        slopes = self.slopes[:, free]
+        coordinates = tuple(one for one, is_free in zip(self.coordinates, free, strict=True) if is_free)
+        covariance = np.asarray(np.linalg.pinv(slopes.T @ slopes, hermitian=True), dtype=float)
+        return replace(self, coordinates=coordinates, slopes=slopes, covariance=covariance)
 
     def drawn(self, count: int) -> tuple[Model, ...]:
         """Models that the data allow as well, by the covariance of the numbers; the same ones every time."""
@@ -196,12 +204,6 @@ def linearised(problem: Problem, point: Point, *, free: bool = True) -> Linearis
 def _differences(hypothesis: Hypothesis) -> tuple[float, ...]:
     """Times the usual ones, by which slopes are taken, widest first."""
     return _ABRUPT if hypothesis.is_abrupt else (1.0,)
-
-
-def left_to_gain(at: Linearised) -> float:
-    """Growth of log L that the numbers of a point promise to first order (Newton's decrement)."""
-    slope = at.slopes.T @ at.left
-    return growth(0.5 * float(slope @ at.covariance @ slope), 0.5 * float(at.left @ at.left))
 
 
 def growth(drop: float, whole: float) -> float:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -29,6 +29,7 @@ class Mass:
     series: tuple[Series, ...]
     ratio: float
     delay_s: float = 0.0
+    _known: dict[Hashable, Array] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @cached_property
     def noise_rad_s(self) -> float:
@@ -101,17 +102,29 @@ class Mass:
 
     def column(self, effect: Effect, values: dict[str, float | str], chain: Chain) -> Array:
         """Impulse of an effect's torque against positive motion."""
-        return self.windowed([self._torque(one, effect, values, chain) for one in self.series], sums=True)
-
-    def _torque(self, one: Series, effect: Effect, values: dict[str, float | str], chain: Chain) -> Array:
         numbers = tuple(float(values[p.name]) for p in effect.parameters)
-        motor, wheel, angle = self.speed(one), self.wheel(one), self.angle(one)
+        key = (effect.id, numbers, chain)
+        if key not in self._known:
+            torques = [
+                self._torque(one, motions, effect, numbers, chain)
+                for one, motions in zip(self.series, self._motions, strict=True)
+            ]
+            self._known[key] = self.windowed(torques, sums=True)
+        return self._known[key]
+
+    @cached_property
+    def _motions(self) -> list[list[Motion]]:
+        """What laws see of each recording at block means."""
+        tracks = (self.speed, self.wheel, self.angle)
+        every = [zip(*(track(one).tolist() for track in tracks), strict=True) for one in self.series]
+        return [[Motion(w, v, v, 0.0, 0.0, 0.0, 0.0, a, a / self.ratio) for w, v, a in one] for one in every]
+
+    def _torque(
+        self, one: Series, motions: Sequence[Motion], effect: Effect, numbers: tuple[float, ...], chain: Chain
+    ) -> Array:
+        motor = self.speed(one)
         law, total = effect.law, np.zeros(len(motor))
         known = np.abs(motor) > _QUIET * float(np.max(np.abs(motor)))
-        motions = [
-            Motion(w, v, v, 0.0, 0.0, 0.0, 0.0, a, a / self.ratio)
-            for w, v, a in zip(motor.tolist(), wheel.tolist(), angle.tolist(), strict=True)
-        ]
         if law.dry is not None:
             total += np.array([law.dry(m, chain, 0.0, numbers) for m in motions]) * np.sign(motor) * known
         if law.loss is not None:

@@ -7,7 +7,6 @@ costs one simulation. The one that leaves least begins another fit.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -36,17 +35,9 @@ def other_minimum(problem: Problem, at: Linearised, reach: float) -> tuple[float
     hypothesis = at.point.hypothesis
     mine = [one.term >= 0 and EFFECTS[hypothesis.terms[one.term].id].abrupt for one in at.coordinates]
     own = [one for one, is_own in zip(at.coordinates, mine, strict=True) if is_own]
-    rest = _without(at, ~np.array(mine))
+    rest = at.holding(mine)
     drawn = [hypothesis.moved(own, _moves(own, hypothesis, reach * x)) for x in _draws(len(own))]
     return at_its_best(problem, rest, drawn)
-
-
-def _without(at: Linearised, kept: npt.NDArray[np.bool_]) -> Linearised:
-    """The same, some coordinates held."""
-    slopes = at.slopes[:, kept]
-    coordinates = tuple(one for one, keeps in zip(at.coordinates, kept, strict=True) if keeps)
-    covariance = np.asarray(np.linalg.pinv(slopes.T @ slopes, hermitian=True), dtype=float)
-    return replace(at, coordinates=coordinates, slopes=slopes, covariance=covariance)
 
 
 def _moves(own: list[Coordinate], hypothesis: Hypothesis, draw: Array) -> Array:

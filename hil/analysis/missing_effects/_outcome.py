@@ -38,16 +38,6 @@ class Named:
 
 
 @dataclass(frozen=True)
-class Gap:
-    """rms(measured - simulated) / rms(measured - its mean) of a channel, by three models, and of noise."""
-
-    base: float
-    numbers: float
-    after: float
-    noise_floor: float
-
-
-@dataclass(frozen=True)
 class Curve:
     """A latent torque over what it follows best, and the share of its variance that this explains."""
 
@@ -76,22 +66,17 @@ class Replay:
         self._shown.append((model, np.column_stack([shown.get(name, none) for name in OUTPUTS])))
         return self._shown[-1][1]
 
-    def errors(self, model: Model) -> Array:
-        """Measured less simulated as block means, blocks x 3; NaN where a channel was not recorded."""
-        one, count = self.series, len(self.series.measured)
-        away = (one.samples - self.outputs(model))[: count * one.block]
-        return np.asarray(away.reshape(count, one.block, -1).mean(axis=1))
-
 
 @dataclass(frozen=True)
 class Outcome:
     """All that `explain_gap` has to say.
 
-    `numbers` by name: base, found, standard error. `curves` show what stays. `noise` (3,) is the proven
-    standard deviation of one sample, NaN where a channel was not recorded. `as_likely` are models drawn from
-    what the fit knows of its numbers. `steadied` is a drag in the model without a name: it keeps it from
-    drifting where recordings do not excite what would name it. `unfinished` says why the search ended before
-    it was through, if it did: names are candidates then.
+    `numbers` by name: base, found, standard error. `model` is given back, `alone` is the base with the
+    numbers that suit the recordings best where nothing joins them. `curves` show what stays. `noise` (3,) is
+    the proven standard deviation of one sample, NaN where a channel was not recorded. `as_likely` are models
+    drawn from what the fit knows of its numbers. `steadied` is a drag in the model without a name: it keeps
+    it from drifting where recordings do not excite what would name it. `unfinished` says why the search ended
+    before it was through, if it did: names are candidates then.
     """
 
     verdict: Verdict
@@ -99,9 +84,8 @@ class Outcome:
     alternatives: tuple[Named, ...]
     numbers: dict[str, tuple[float, float, float]]
     base_was_far: bool
-    gap: dict[str, Gap]
-    holdout_gap: dict[str, Gap]
     model: Model
+    alone: Model
     curves: tuple[Curve, ...]
     seconds: float
     noise: Array

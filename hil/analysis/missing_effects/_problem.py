@@ -163,6 +163,11 @@ class Problem:
         numbers[:, -room:] = beginning
         return numbers
 
+    def by_octave(self, index: int, rows: Array) -> Array:
+        """Products of rows of `weighed` numbers with each other, 3 x bands x rows x rows."""
+        one = self.series[index]
+        return self.spectrum.by_octave(rows, one.has, len(one.measured), one.rate_hz)
+
     def start_basis(self, index: int, hypothesis: Hypothesis, start: Array) -> tuple[Array, Array, Array]:
         """Change of weighed errors with a recording's start (numbers x states), sizes, and its basis."""
         one = self.series[index]
@@ -219,9 +224,17 @@ class Problem:
         away = self._away(coordinates, u)
         return np.asarray(np.sign(away) * np.sqrt(2.0 * np.log1p(away**2)))
 
-    def log_prior(self, hypothesis: Hypothesis) -> float:
-        """Log density of a hypothesis' numbers, of which the base says something."""
-        coordinates = self.coordinates(hypothesis)
+    def log_prior(self, hypothesis: Hypothesis, *, far: bool = False) -> float:
+        """Log density of a hypothesis' numbers, of which the base says something.
+
+        Args:
+            far: whether most of them are not what it says: then it says nothing but a count of teeth.
+        """
+        coordinates = [
+            one
+            for one in self.coordinates(hypothesis)
+            if not far or one.term >= 0 or one.name == "gear_ratio"
+        ]
         return -0.5 * float(np.sum(self.prior(coordinates, np.zeros(len(coordinates))) ** 2))
 
     def prior_slopes(self, coordinates: Sequence[Coordinate], u: Array) -> Array:

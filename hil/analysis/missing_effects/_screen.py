@@ -1,8 +1,7 @@
 """Linear evidence over all names at once: what of the misfit could each effect take away?
 
-Each effect is simulated at the sizes that its own file gives (`probes`). The change d of the weighed outputs,
-beside what all numbers and starts could do (projected out), against the misfit r, has the bounded solution of
-a linear regression; its drop of -log L, α·d·r - ½ α²·d·d, ranks the names (score test, C. R. Rao, 1948). One
+Each effect is simulated at the sizes that its own file gives (`probes`). The change that it makes, beside
+what all numbers and starts could do, says what it promises (`_projection`), and that ranks the names. One
 optimum each, no search over simulations.
 """
 
@@ -17,10 +16,11 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.missing_effects._fit import Linearised, Point, growth
+from hil.analysis.missing_effects._fit import Linearised, Point
 from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of
 from hil.analysis.missing_effects._orders import orders_of
 from hil.analysis.missing_effects._problem import Problem
+from hil.analysis.missing_effects._projection import Projection
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS, STRETCH, Direction, Effect, Probe
 from hil.core.model import EffectUse
@@ -31,8 +31,7 @@ Array = npt.NDArray[np.float64]
 NUMBERS = {"dead_time": "torque_delay", "viscous_drag": "viscous_drag"}
 """Effects that are a change of a number which a base may have, and which is free there."""
 _AT_ONCE = 24  # simulations
-_AS_IT_IS = Direction({}, 1.0, 1.0)
-_SWEEPS = 20  # of coordinate descent over at most two bounded factors
+_AS_IT_IS, _STRETCHED = Direction({}, 1.0, 1.0), (Direction({}, *STRETCH),)
 
 
 @dataclass(frozen=True)
@@ -91,7 +90,9 @@ def promises(
     Args:
         asked: which effects are looked at; all of them when left out.
     """
-    project = _Projection(problem, at)
+    if problem.model.kind == "rigid":  # its shaft torque leaps with a delay, where a slope sees it glide
+        at = at.holding([one.name == "torque_delay" for one in at.coordinates])
+    project = Projection(problem, at)
     joining = [one for one in _asked(Scene(problem, at.point.hypothesis, at.point)) if asked(one[0][0])]
     found = _promised(project, [one for one in joining if one[1].first])
     best: dict[str, tuple[float, int]] = {}
@@ -106,7 +107,7 @@ def promises(
 
 
 def _promised(
-    project: _Projection, joining: Sequence[tuple[list[EffectUse], Probe]]
+    project: Projection, joining: Sequence[tuple[list[EffectUse], Probe]]
 ) -> list[tuple[Promise, int]]:
     """What sizes of effects promise, each with the place of its probe."""
     at, found = project.at, []
@@ -116,10 +117,10 @@ def _promised(
         first = 0
         for uses, probe in some:
             which, first = slice(first, first + len(uses)), first + len(uses)
-            factors, drop, u = project.explained(alone, which, probe.directions)
-            use = EffectUse(uses[0].id, dict(probe.start(factors)))
-            gain = growth(drop, 0.5 * float(at.left @ at.left))
-            found.append((Promise(use, at.point, gain, hypothesis.moved(at.coordinates, u)), probe.place))
+            taken = project.explained(alone, which, probe.directions)
+            use = EffectUse(uses[0].id, dict(probe.start(taken.factors)))
+            numbers = hypothesis.moved(at.coordinates, taken.moves)
+            found.append((Promise(use, at.point, taken.gain, numbers), probe.place))
     return found
 
 
@@ -182,100 +183,27 @@ def _size(effect: Effect, scene: Scene) -> float:
     return torque if effect.parameters[0].unit == "N m" else torque / max(speed, 1e-9)
 
 
-@dataclass(frozen=True)
-class _Products:
-    """Of weighed changes by hypotheses: with each other, with the misfit, with the numbers' slopes.
-
-    The first two are of what is left beside the numbers: k x k, (k,), and coordinates x k.
-    """
-
-    normal: Array
-    right: Array
-    by_numbers: Array
-
-
-class _Projection:
-    """Simulates additions to a fitted hypothesis and leaves what its numbers and starts cannot do."""
-
-    def __init__(self, problem: Problem, at: Linearised) -> None:
-        self.problem, self.at = problem, at
-        self.squares = at.slopes.T @ at.slopes
-        self.misfit = at.slopes.T @ at.left
-        packed = [at.point.hypothesis.packed()]
-        self.plain = problem.each(lambda i: problem.simulated(i, packed, at.point.starts[i][None])[0])
-        self.ends = np.cumsum([0, *map(len, at.bases)]).tolist()
-
-    def products(self, hypotheses: Sequence[Hypothesis]) -> _Products:
-        """Of the changes that hypotheses make, recording by recording."""
-        packed = [one.packed() for one in hypotheses]
-
-        def of(index: int) -> tuple[Array, Array, Array]:
-            starts = np.repeat(self.at.point.starts[index][None], len(packed), axis=0)
-            shown = self.problem.simulated(index, packed, starts, keep=False)
-            change = self.problem.weighed(index, shown - self.plain[index])
-            # what starts could do; misfit and slopes are without it
-            by_starts = change @ self.at.bases[index]
-            here = slice(*self.ends[index : index + 2])
-            return (
-                change @ change.T - by_starts @ by_starts.T,
-                change @ self.at.left[here],
-                (change @ self.at.slopes[here]).T,
-            )
-
-        normal, right, by_numbers = (sum(parts) for parts in zip(*self.problem.each(of), strict=True))
-        taken = self.at.covariance @ by_numbers
-        both = by_numbers.T @ taken
-        normal += taken.T @ self.squares @ taken - both - both.T
-        return _Products(normal, right - taken.T @ self.misfit, by_numbers)
-
-    def explained(
-        self, of: _Products, which: slice, directions: Sequence[Direction]
-    ) -> tuple[list[float], float, Array]:
-        """Factors of the directions within bounds, the drop that they bring, and moves of the numbers.
-
-        Args:
-            which: of the hypotheses, the directions at their size.
-        """
-        normal, right = of.normal[which, which], of.right[which]
-        if not np.all(np.isfinite(normal)):
-            return [1.0] * len(directions), -math.inf, np.zeros(len(self.at.coordinates))
-        factors = np.clip(
-            np.ones(len(directions)), [o.lower for o in directions], [o.upper for o in directions]
-        )
-        for _ in range(_SWEEPS if len(directions) > 1 else 1):
-            for i, one in enumerate(directions):
-                rest = right[i] - normal[i] @ factors + normal[i, i] * factors[i]
-                factors[i] = min(max(rest / max(normal[i, i], 1e-300), one.lower), one.upper)
-        drop = float(factors @ right - 0.5 * factors @ normal @ factors)
-        moves = self.at.covariance @ (of.by_numbers[:, which] @ factors - self.misfit)
-        return factors.tolist(), drop, np.clip(moves, -1.0, 1.0)  # a factor e at most
-
-
 def promised_by(problem: Problem, at: Linearised, hypotheses: Sequence[Hypothesis]) -> list[float]:
     """Growth of log L that neighbours of a point promise to first order, of about their sizes."""
-    project = _Projection(problem, at)
+    project = Projection(problem, at)
     of = project.products(hypotheses)
-    squares, right = np.diag(of.normal), of.right
-    factors = np.clip(right / np.maximum(squares, 1e-300), *STRETCH)
-    drops = np.where(np.isfinite(squares), factors * right - 0.5 * factors**2 * squares, -np.inf)
-    whole = 0.5 * float(at.left @ at.left)
-    return [growth(float(drop), whole) for drop in drops]
+    return [project.explained(of, slice(i, i + 1), _STRETCHED).gain for i in range(len(hypotheses))]
 
 
 def at_its_best(
     problem: Problem, at: Linearised, hypotheses: Sequence[Hypothesis]
 ) -> tuple[float, Hypothesis]:
     """Of neighbours of a point the one that promises most growth of log L, its other numbers moved along."""
-    project = _Projection(problem, at)
+    project = Projection(problem, at)
     gain, best = -math.inf, at.point.hypothesis
     for first in range(0, len(hypotheses), _AT_ONCE):
         some = hypotheses[first : first + _AT_ONCE]
         of = project.products(some)
         for place, one in enumerate(some):
-            _, drop, moves = project.explained(of, slice(place, place + 1), (_AS_IT_IS,))
-            if drop > gain:
-                gain, best = drop, one.moved(at.coordinates, moves)
-    return growth(gain, 0.5 * float(at.left @ at.left)), best
+            found = project.explained(of, slice(place, place + 1), (_AS_IT_IS,))
+            if found.gain > gain:
+                gain, best = found.gain, one.moved(at.coordinates, found.moves)
+    return gain, best
 
 
 def best_by_name(found: Sequence[Promise], each: int) -> list[list[Promise]]:

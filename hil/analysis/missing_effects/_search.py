@@ -146,9 +146,10 @@ def _among_losses(done: Candidates, grown: Candidate, show: Callable[[str], None
     fewer = grown.point.hypothesis.without(0)
     near, problem = done.at(fewer, grown), done.weighed_as(grown)
     found = promises(problem, linearised(problem, near.point), is_loss)
+    brought = HALF * (grown.log_likelihood - near.log_likelihood)
     best = grown
     for promise, *_ in best_by_name(found, 1):
-        if promise.label not in grown.names:
+        if promise.label not in grown.names and promise.gain > brought:
             show(f"fitting {promise.label}")
             instead = done.fitted(fewer.with_term(promise.use), near)
             best = max(best, _opened(done, instead, show), key=done.score)
@@ -196,7 +197,11 @@ def _best_of(
         tried = tried[: max(_RIVALS, len(tried) // 2)]
         tried = _best_of_each_name(done, [done.fitted(one.point.hypothesis, one, rounds) for one in tried])
         rounds *= 2
-    ended = [_opened(done, done.fitted(one.point.hypothesis, one), show) for one in tried]
+    ended: list[Candidate] = []
+    for one in tried:
+        reached = max((done.score(other) - done.score(best) for other in ended), default=0.0)
+        if done.score(one) + done.promised(one) - done.score(best) >= HALF * reached:
+            ended.append(_opened(done, done.fitted(one.point.hypothesis, one), show))
     grown = max(ended, key=done.score, default=None)
     return grown and _out_of_minima(done, grown)
 
@@ -284,7 +289,8 @@ def _beside_the_base(done: Candidates, best: Candidate, least: float) -> list[tu
     """Names beside the base's numbers as they came, where these alone moved for more than a name costs.
 
     A gain or a lag of a sensor may look like three numbers that are wrong: from there a fit would not come
-    back. Its own numbers are fitted first, the base's held: where that is right, a play has one minimum.
+    back. Of names that promise half of what these brought, the own numbers are fitted first, the base's held:
+    where that is right, a play has one minimum. What they promise from there is told.
     """
     if best.names:
         return []
@@ -295,14 +301,16 @@ def _beside_the_base(done: Candidates, best: Candidate, least: float) -> list[tu
     if behind < least:
         return []
     problem = done.weighed_as(near)
-    promised = [
-        one for one in promises(problem, linearised(problem, near.point)) if one.gain - behind > least
-    ]
+    promised = promises(problem, linearised(problem, near.point))
+    most = HALF * max([behind, *(one.gain for one in promised)])
+    promised = [one for one in promised if one.gain > most]
     found = []
     for one, *_ in best_by_name(promised, 1):
         held = done.fitted(base.with_term(one.use), near, held=frozenset(base.numbers))
-        starts = held.point.hypothesis, one.numbers.with_term(one.use)
-        found.append((_likelier(done, near, *starts), one.gain - behind))
+        ahead = done.score(held) + done.promised(held) - done.score(best)
+        if max(ahead, one.gain - behind) > least:
+            starts = held.point.hypothesis, one.numbers.with_term(one.use)
+            found.append((_likelier(done, near, *starts), max(ahead, one.gain - behind)))
     return found
 
 

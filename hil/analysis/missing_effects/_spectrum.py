@@ -24,6 +24,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -77,6 +78,21 @@ class Spectrum:
             transformed(one[None], rate_hz, transform[None])
             transform *= weights
         return out
+
+    def by_octave(self, rows: Array, channels: Channels, blocks: int, rate_hz: float) -> Array:
+        """Products of rows of `weighed` numbers with each other, 3 x bands x rows x rows."""
+        firsts, window = _windows(blocks, rate_hz)
+        bands = _bands(self.edges_hz, len(window), rate_hz)
+        seen = np.flatnonzero(channels)
+        shape = (len(rows), len(seen), len(firsts), 2 * len(bands))
+        numbers = rows[:, : math.prod(shape[1:])].reshape(shape)
+        found = np.zeros((len(channels), len(self.edges_hz) - 1, len(rows), len(rows)))
+        edges = 2 * np.searchsorted(bands, np.arange(len(self.edges_hz)))
+        for place, channel in enumerate(seen.tolist()):
+            for band, (low, high) in enumerate(pairwise(edges.tolist())):
+                inside = numbers[:, place, :, low:high].reshape(len(rows), len(firsts) * (high - low))
+                found[channel, band] = inside @ inside.T
+        return found
 
     def rising(self, values: Array, channels: Channels, rate_hz: float) -> Array:
         """sets x blocks x channels as weighed numbers of the beginning, where windows weigh little.
@@ -157,6 +173,17 @@ class Powers:
         """Log likelihood of an octave by its mean power (3 x bands)."""
         shared = np.log1p(d / n) - np.log1p(d / p)
         return np.asarray(-np.log((p + d) / (n + d)) - (inside - 1.0) * n / d * shared)
+
+    def growth(self, noise: Array, stays: Array) -> float:
+        """Of the log likelihood where such shares of the power of each octave (3 x bands) stay."""
+        p, n, d, inside = self._terms(noise)
+        more = self._of_means(np.maximum(stays * p, n), n, d, inside) - self._of_means(p, n, d, inside)
+        return float(np.sum(self.bins.sum(axis=0) / inside * more))
+
+    def weights(self, noise: Array, stays: Array) -> Array:
+        """Of each octave (3 x bands) where such shares of its power stay, in those that it has now."""
+        p, n, d, inside = self._terms(noise)
+        return self._slope(np.maximum(stays * p, n), n, d, inside) / self._slope(p, n, d, inside)
 
     def values(self, noise: Array) -> float:
         """Independent values that errors hold: two for a bin of noise, two for an octave of discrepancy."""

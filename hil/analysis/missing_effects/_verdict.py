@@ -27,7 +27,7 @@ from hil.analysis.missing_effects._mismatch import as_the_base_has, is_far, mism
 from hil.analysis.missing_effects._noise import rounding_step
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains, weights_of
 from hil.analysis.missing_effects._orders import PERIODS, turns
-from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Replay, Verdict
+from hil.analysis.missing_effects._outcome import Named, Outcome, Replay, Verdict
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._search import HALF, is_loss
 from hil.core.channels import OUTPUTS
@@ -46,7 +46,7 @@ _DRAWN = 40  # models, by which a figure of the new model is known
 
 @dataclass(frozen=True)
 class Judged:
-    """A search, and what a candidate leaves: variance over all data, gaps of both kinds of data.
+    """A search, the variance that a candidate leaves over all data, and recordings of both kinds.
 
     `asked` is the model as it came.
     """
@@ -54,7 +54,6 @@ class Judged:
     asked: Model
     done: Candidates
     left: Callable[[Candidate], Array]
-    gaps: Callable[[Model], tuple[dict[str, Gap], dict[str, Gap]]]
     fitted: tuple[Replay, ...]
     held_out: tuple[Replay, ...]
 
@@ -69,7 +68,7 @@ def as_far_as_known(of: Judged, why: str) -> Outcome:
     numbers, model = numbers_of(at, of.asked), alone.point.hypothesis.model()
     return Outcome(
         "unknown", (), tuple(_others(of, alone, candidates, weights)), numbers, is_far(numbers, done),
-        *of.gaps(model), model,
+        model, model,
         curves_of(alone.point.hypothesis, done.problem.series), 0.0,
         done.problem.noise * np.sqrt(done.problem.series[0].block), (), of.fitted, of.held_out,
         unfinished=why,
@@ -94,15 +93,15 @@ def judged(of: Judged) -> Outcome:
     if near_noise and best.names:  # more names than are worth telling decide nothing
         candidates = [one for one in candidates if len(one.names) <= len(best.names)]
     values = done.problem.powers(best.point.errors, once=True).values(done.problem.noise)
-    weights = _weights(done.problem, candidates, values)
+    numbers = numbers_of(at, of.asked)
+    far = is_far(numbers, done)
+    weights = _weights(done.problem, candidates, values, far=far)
     rivals = _alike(done, best, candidates, weights)
     effects: list[Named] = []
     doubtful: list[Named] = []
     for index, use in enumerate(best.point.hypothesis.terms):
         named = _named(best, index, use, at, candidates, weights, rivals, shares[index])
         (effects if named.confidence >= HALF else doubtful).append(named)
-    numbers = numbers_of(at, of.asked)
-    far = is_far(numbers, done)
     if _may_be_off(of, at):
         effects += mismatches(done, numbers, best, as_the_base)
     if done.problem.is_noise(best.point.errors):
@@ -117,19 +116,23 @@ def judged(of: Judged) -> Outcome:
     model = (given.with_term(steadied) if steadied else given).model()
     return Outcome(
         verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), numbers, far,
-        *of.gaps(model), model,
+        model, done.found[()].point.hypothesis.model(),
         curves_of(best.point.hypothesis, done.problem.series), 0.0,
         done.problem.noise * np.sqrt(done.problem.series[0].block), at.drawn(_DRAWN), of.fitted, of.held_out,
         steadied,
     )  # fmt: skip
 
 
-def _weights(problem: Problem, candidates: Sequence[Candidate], values: float) -> Array:
+def _weights(problem: Problem, candidates: Sequence[Candidate], values: float, *, far: bool = False) -> Array:
     """Posterior weight of each candidate; what a repeated torque shows again and again counts once.
 
     A fit may use every window of it, as a composite likelihood; odds may not (C. Varin, N. Reid, D. Firth,
-    Statistica Sinica 21 (2011) 5).
+    Statistica Sinica 21 (2011) 5). Nor may a base decide whose numbers are far off.
     """
+    if far:
+        candidates = [
+            replace(one, prior=problem.log_prior(one.point.hypothesis, far=True)) for one in candidates
+        ]
     once = (problem.powers(one.point.errors, once=True) for one in candidates)
     windows = np.stack([one.log_likelihood(problem.noise) for one in once])
     return weights_of(candidates, windows, values)

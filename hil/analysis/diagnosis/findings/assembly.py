@@ -31,6 +31,7 @@ from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.errors.wording import multiple, share
 from hil.core.model import EffectUse, Model
+from hil.core.runtime.thread_map import map_on_threads
 from hil.plant import gear_ratio_of
 
 Array = npt.NDArray[np.float64]
@@ -133,7 +134,7 @@ class _Shown:
     def of(cls, replays: tuple[Replay, ...], base: Model, model: Model, noise: Array) -> _Shown:
         """Both models on recordings; `noise` (3,) is a standard deviation of a sample."""
         traces = [_trace(one) for one in replays]
-        before, after = ([one.outputs(each) for one in replays] for each in (base, model))
+        before, after = (_outputs(replays, each) for each in (base, model))
         gaps = [channel_gaps(traces, noise, samples) for samples in (before, after)]
         maps = [gap_map(traces, noise, samples) for samples in (before, after)]
         return cls(replays, traces, before, after, gaps[0], gaps[1], maps[0], maps[1])
@@ -143,6 +144,11 @@ class _Shown:
         """Measured and simulated of each recording."""
         every = zip(self.traces, self.before_samples, self.after_samples, strict=True)
         return tuple(Overlay(t.name, t.dt, t.torque, t.samples, b, a) for t, b, a in every)
+
+
+def _outputs(replays: Sequence[Replay], model: Model) -> list[Array]:
+    """Of a model on each recording."""
+    return map_on_threads(lambda one: one.outputs(model), replays)
 
 
 def _trace(one: Replay) -> Trace:
@@ -161,7 +167,7 @@ def _named(found: Outcome, one: Named, shown: _Shown) -> NamedEffect:
         band = (0.0, round(0.5 / shown.traces[0].dt, 1))
         place = Where((channel,), band, "at all operating conditions")
     else:
-        samples = [replay.outputs(without) for replay in shown.replays]
+        samples = _outputs(shown.replays, without)
         place = where_changed(
             shown.traces, found.noise, samples, shown.after_samples, shown.map_before, shown.map_after
         )
@@ -225,7 +231,7 @@ def _numbers(found: Outcome, shown: _Shown) -> tuple[Start | None, dict[str, tup
     named = {str(one.use.values["parameter"]) for one in found.effects if one.id == "parameter_mismatch"}
     if not found.base_was_far:
         return None, {name: values for name, values in moved.items() if name not in named}
-    gaps = {name: ChannelGap(one.numbers, one.noise_floor) for name, one in found.gap.items()}
+    gaps = channel_gaps(shown.traces, found.noise, _outputs(shown.replays, found.alone))
     return Start(moved, tuple(t.name for t in shown.traces), gaps), {}
 
 
