@@ -97,7 +97,7 @@ def main() -> None:
         for title, model in (("three inertias", linear), ("default bench (wheel order)", with_order)):
             vector = slots.pack(model)
             refuse_more(vector)
-            rest = np.zeros(kernel.START_TYRE_TWIST + 1)
+            rest = np.zeros(kernel.START_COLUMNS)
             out_c, out = kernel.empty_output(SAMPLES), kernel.empty_output(SAMPLES)
             kernel.run(torque, load, True, DT, vector, rest, STEP, out)  # compiles
             c_ms = best_of(partial(run_c, torque, vector, out_c))

@@ -36,6 +36,7 @@ OUT_WHEEL_APART, OUT_SHAFT_APART = OUTPUT_COLUMNS, OUTPUT_COLUMNS + 1
     START_VEHICLE_AHEAD,  # of the wheel, in mid-motion of a tyre between them
     START_TYRE_TWIST,  # beyond what the shaft torque holds
 ) = range(7)
+START_COLUMNS = 7
 _PARAMETERS = len(P.SLOTS)
 _MEMORIES = len(X.NO_MEMORY)
 

@@ -55,7 +55,7 @@ def test_c_and_kernel_compute_the_same(tmp_path: Path) -> None:
     refuse_more(vector)
     torque, load = np.full(SAMPLES, 40.0), np.zeros(SAMPLES)
     ours, others = kernel.empty_output(SAMPLES), kernel.empty_output(SAMPLES)
-    kernel.run(torque, load, True, DT, vector, np.zeros(5), STEP, ours)
+    kernel.run(torque, load, True, DT, vector, np.zeros(kernel.START_COLUMNS), STEP, ours)
     compiled_c(tmp_path, DT, STEP)(torque, vector, others)
     assert np.max(np.abs(ours[:, 0])) > 1.0
     assert largest_difference("C", ours, others, 1e-6) < 1e-6

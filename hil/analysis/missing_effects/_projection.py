@@ -32,12 +32,17 @@ _SETTLED = 0.1  # growth of log L between rounds that ends them
 class Products:
     """Of weighed changes (k), slopes of the numbers and the misfit with each other: `whole`, and by octaves.
 
-    (k + numbers + 1) squared, and 3 x bands of it.
+    (k + numbers + 1) squared, and 3 x bands of it. `abrupt`: of which hypotheses outputs do not go straight.
     """
 
-    count: int
+    abrupt: tuple[bool, ...]
     whole: Array
     octaves: Array
+
+    @property
+    def count(self) -> int:
+        """How many changes."""
+        return len(self.abrupt)
 
 
 @dataclass(frozen=True)
@@ -71,7 +76,7 @@ class Projection:
             return self._products(index, change)
 
         whole, octaves = (sum(parts) for parts in zip(*self.problem.each(of), strict=True))
-        return Products(len(packed), whole, octaves)
+        return Products(tuple(one.is_abrupt for one in hypotheses), whole, octaves)
 
     @cached_property
     def alone(self) -> Explained:
@@ -80,7 +85,7 @@ class Projection:
             lambda index: self._products(index, np.empty((0, len(self.at.bases[index]))))
         )
         whole, octaves = (sum(parts) for parts in zip(*each, strict=True))
-        return self._taken_off(Products(0, whole, octaves), slice(0), ())
+        return self._taken_off(Products((), whole, octaves), slice(0), ())
 
     def _products(self, index: int, change: Array) -> tuple[Array, Array]:
         """Of changes of a recording's weighed outputs, slopes of the numbers, and the misfit."""
@@ -100,7 +105,8 @@ class Projection:
     def _taken_off(self, of: Products, which: slice, directions: Sequence[Direction]) -> Explained:
         """What directions and numbers take off together.
 
-        Each round weighs octaves by what the one before left of them, as those of a fit do.
+        Each round weighs octaves by what the one before left of them, as those of a fit do. Where outputs do
+        not go straight so much is not known: one round.
         """
         rows = np.arange(len(of.whole))
         parts = np.concatenate([rows[which], rows[of.count :]])
@@ -114,7 +120,7 @@ class Projection:
         rest[len(directions) :, len(directions) :] += prior.T @ prior
         had, stays = octaves[..., misfit, misfit], np.ones(octaves.shape[:2])
         best = Explained([1.0] * len(directions), np.zeros(len(self.at.coordinates)), -math.inf)
-        for _ in range(_ROUNDS):
+        for _ in range(1 if any(of.abrupt[which]) else _ROUNDS):
             weights = self.powers.weights(noise, stays)
             both = rest + np.tensordot(weights, octaves, 2)
             inverse = np.linalg.pinv(both[numbers, numbers], hermitian=True)

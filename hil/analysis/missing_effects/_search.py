@@ -197,11 +197,7 @@ def _best_of(
         tried = tried[: max(_RIVALS, len(tried) // 2)]
         tried = _best_of_each_name(done, [done.fitted(one.point.hypothesis, one, rounds) for one in tried])
         rounds *= 2
-    ended: list[Candidate] = []
-    for one in tried:
-        reached = max((done.score(other) - done.score(best) for other in ended), default=0.0)
-        if done.score(one) + done.promised(one) - done.score(best) >= HALF * reached:
-            ended.append(_opened(done, done.fitted(one.point.hypothesis, one), show))
+    ended = [_opened(done, done.fitted(one.point.hypothesis, one), show) for one in tried]
     grown = max(ended, key=done.score, default=None)
     return grown and _out_of_minima(done, grown)
 

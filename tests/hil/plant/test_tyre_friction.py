@@ -31,7 +31,9 @@ def run(model: Model, torque: np.ndarray) -> dict[str, np.ndarray]:
 def speeds(model: Model, torque: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Wheel and vehicle in rad/s."""
     out = K.empty_output(len(torque))
-    K.run(torque, np.zeros(len(torque)), True, DT, pack(model), np.zeros(5), LONGEST_STEP_S, out)
+    K.run(
+        torque, np.zeros(len(torque)), True, DT, pack(model), np.zeros(K.START_COLUMNS), LONGEST_STEP_S, out
+    )
     return out[:, K.OUT_WHEEL_SPEED], out[:, K.OUT_VEHICLE_SPEED]
 
 

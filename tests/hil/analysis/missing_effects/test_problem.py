@@ -31,3 +31,12 @@ def test_a_gain_far_from_one_costs_as_much_as_a_number_that_is_as_far_off() -> N
     by_number, by_gain = (done.judged(point_at(problem, one)).prior for one in (off, gain))
     assert by_gain == pytest.approx(by_number, rel=0.1)
     assert by_gain < -3.0
+
+
+def test_a_base_that_is_far_off_says_nothing_but_its_teeth() -> None:
+    problem = chirp_problem(1.0)
+    base = Hypothesis(problem.model, dict(problem.model.parameters))
+    softer, geared = base.with_number("shaft_stiffness", 4000.0), base.with_number("gear_ratio", 8.4)
+    assert problem.log_prior(softer) < -4.0
+    assert problem.log_prior(softer, far=True) == problem.log_prior(base, far=True) == 0.0
+    assert problem.log_prior(geared, far=True) == problem.log_prior(geared) < -4.0

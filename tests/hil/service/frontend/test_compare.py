@@ -42,6 +42,24 @@ def test_a_run_is_not_compared_with_itself(page: playwright.Page, there: Served)
     expect(page.get_by_text("Choose two runs or more")).to_be_visible()
 
 
+@pytest.mark.parametrize("refusals", [("404 (Not Found)",)])
+def test_a_run_that_is_not_there_can_be_left_out(page: playwright.Page, there: Served) -> None:
+    to(page, there, "compare?runs=1,9999")
+    expect(page.get_by_text("There is no run 9999")).to_be_visible()
+    page.get_by_role("button", name="Leave out run 9999").last.click()
+    expect(page).to_have_url(re.compile("runs=1$"))
+    expect(page.get_by_text("There is no run 9999")).to_have_count(0)
+
+
+@pytest.mark.parametrize("refusals", [("404 (Not Found)",)])
+def test_trends_of_a_bench_that_is_not_there_lead_to_those_that_are(
+    page: playwright.Page, there: Served
+) -> None:
+    to(page, there, "trends?bench=none&plan=short")
+    expect(page.get_by_text("There is no bench 'none'")).to_be_visible()
+    expect(page.get_by_role("link", name="All benches")).to_be_visible()
+
+
 def test_a_run_of_a_copy_is_compared_with_the_best_run_in_one_click(
     page: playwright.Page, there: Served
 ) -> None:

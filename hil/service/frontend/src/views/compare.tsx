@@ -5,7 +5,7 @@ import { useEffect, useState } from "preact/hooks";
 import { get } from "../api/client.ts";
 import type { Comparison, FoundRuns, Run, RunView } from "../api/types.ts";
 import { to } from "../addresses.ts";
-import { useData } from "../data.ts";
+import { isMissing, useData } from "../data.ts";
 import { moment } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { t, tx } from "../i18n/text.ts";
@@ -42,12 +42,18 @@ export function Compare(): JSX.Element {
     <>
       <Heading>{t("Compare runs")}</Heading>
       <Choose runs={runs} onChange={set} />
+      {runs.map((run) => <NoSuchRun key={run} run={run} onLeaveOut={() => set(runs.filter((one) => one !== run))} />)}
       {twice.map((run) => <p key={run} class="bad" role="status">{t("Run {run} is named twice in the address. A run is not compared with itself: choose another one.", { run })}</p>)}
       {each.length > MOST ? <p class="bad" role="status">{t("{count} runs are chosen; the first {most} are compared.", { count: each.length, most: MOST })}</p> : null}
       {runs.length ? <ChooseRecordings chosen={beside} runs={runs.length} onChange={setBeside} /> : null}
       {runs.length >= 2 || (runs.length && beside.length) ? <Compared key={runs.join()} runs={runs} beside={beside} query={query} setQuery={setQuery} /> : <p class="quiet">{tx("Choose two runs or more, of one plan or of its copies; in the <a>table of runs</a> they can be ticked.", { a: linkTo(to.list("runs")) })}</p>}
     </>
   );
+}
+
+function NoSuchRun({ run, onLeaveOut }: { run: number; onLeaveOut: () => void }): JSX.Element | null {
+  if (!isMissing(useData<Run>(`/runs/${run}`))) return null;
+  return <p class="bad" role="status">{t("There is no run {run}", { run })}. <button type="button" onClick={onLeaveOut}>{t("Leave out run {run}", { run })}</button></p>;
 }
 
 const named = (run: Run): string => `${run.id}: ${run.title || run.plan}, ${runInWords(run)}${run.ended_at ? `, ${moment(run.ended_at)}` : ""}`;
@@ -88,11 +94,11 @@ function Choose({ runs, onChange }: { runs: number[]; onChange: (runs: number[])
 interface Found {
   views: RunView[] | null; // there at once, as their traces are
   pairs: Comparison[] | null; // of the first run with each other: recordings are read for it
-  error: string;
+  error: Error | null;
 }
 
 function useFound(runs: number[]): Found {
-  const [found, setFound] = useState<Found>({ views: null, pairs: null, error: "" });
+  const [found, setFound] = useState<Found>({ views: null, pairs: null, error: null });
   useEffect(() => {
     const control = new AbortController();
     const [first, ...others] = runs;
@@ -101,7 +107,7 @@ function useFound(runs: number[]): Found {
         const all = await Promise.all(asked);
         setFound((before) => ({ ...before, [name]: all }));
       } catch (error) {
-        if (!control.signal.aborted) setFound((before) => ({ ...before, error: (error as Error).message }));
+        if (!control.signal.aborted) setFound((before) => ({ ...before, error: error as Error }));
       }
     };
     void look("views", runs.map((run) => get<RunView>(`/runs/${run}/view`, control.signal)));
@@ -125,9 +131,9 @@ function segmentsOf(views: RunView[]): Common[] {
   return names.filter((name) => views.every((view) => stretchOf(view, name, false) !== null)).map((id) => ({ id, channels }));
 }
 
-function Compared({ runs, beside, query, setQuery }: { runs: number[]; beside: Beside[]; query: URLSearchParams; setQuery: (query: URLSearchParams) => void }): JSX.Element {
+function Compared({ runs, beside, query, setQuery }: { runs: number[]; beside: Beside[]; query: URLSearchParams; setQuery: (query: URLSearchParams) => void }): JSX.Element | null {
   const { views, pairs, error } = useFound(runs);
-  if (error) return <p class="bad" role="alert"><English>{error}</English></p>;
+  if (error) return isMissing({ error }) ? null : <p class="bad" role="alert"><English>{error.message}</English></p>; // which is said above
   if (!views) return <p class="quiet">{t("Loading the runs …")}</p>;
   const segments = segmentsOf(views).filter(({ id }) => !pairs || pairs.every((pair) => pair.segments.some((one) => one.id === id)));
   const segment = segments.find((one) => one.id === query.get("segment")) ?? segments[0];

@@ -3,7 +3,8 @@
 import type { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import type { Trend } from "../../api/types.ts";
-import { useData } from "../../data.ts";
+import { to } from "../../addresses.ts";
+import { isMissing, useData } from "../../data.ts";
 import { figure, limitText } from "../../format.ts";
 import { English } from "../../i18n/english.tsx";
 import { t } from "../../i18n/text.ts";
@@ -34,6 +35,7 @@ export function Trends({ bench, plan, empty }: { bench: string; plan: string; em
   }, [all, dut]);
   const devices = dut && !duts.includes(dut) ? [dut, ...duts] : duts;
   const trend = found.find((one) => one.criterion === criterion) ?? found[0];
+  if (empty && isMissing(asked)) return <NoSuch bench={bench} plan={plan} />;
   if (empty && asked.error) return <p class="bad" role="alert"><English>{asked.error.message}</English></p>;
   if (!trend) return empty && asked.data ? <p class="quiet">{empty}</p> : null;
   return (
@@ -48,6 +50,16 @@ export function Trends({ bench, plan, empty }: { bench: string; plan: string; em
       <TrendPlot trend={trend} label={t("{criterion} over {count} runs: {figures}", { criterion: trend.criterion, count: trend.points.length, figures: figuresOf(trend) })} />
       <Signals of={trend.signals ?? []} />
     </Section>
+  );
+}
+
+function NoSuch({ bench, plan }: { bench: string; plan: string }): JSX.Element {
+  const noBench = isMissing(useData(`/benches/${encodeURIComponent(bench)}`)), noPlan = isMissing(useData(`/plans/${encodeURIComponent(plan)}`));
+  return (
+    <>
+      {noBench ? <p class="bad" role="status">{t("There is no bench '{bench}'", { bench })}. <a href={to.list("benches")}>{t("All benches")}</a></p> : null}
+      {noPlan ? <p class="bad" role="status">{t("There is no plan '{name}'", { name: plan })}. <a href={to.list("plans")}>{t("All plans")}</a></p> : null}
+    </>
   );
 }
 
