@@ -16,7 +16,6 @@ class Means(NamedTuple):
 _TESTS = ".venv/bin/python -m pytest tests/hil/analysis/diagnosis/{}"
 #: The command behind each name of a check.
 CHECKS = {
-    "blind": "make blind",
     "bad_input": _TESTS.format("test_bad_input.py"),
     "noise": _TESTS.format("data/test_noise.py"),
     "grid": _TESTS.format("data/test_grid.py"),
@@ -26,6 +25,6 @@ CHECKS = {
     "consequences": _TESTS.format("findings/test_consequences.py"),
     "least": _TESTS.format("findings/test_least.py"),
     "separating": _TESTS.format("findings/test_separating.py"),
-    "verdict": _TESTS.format("findings/test_verdict.py"),
+    "held_out": _TESTS.format("findings/test_held_out.py"),
     "words": _TESTS.format("findings/test_words.py"),
 }

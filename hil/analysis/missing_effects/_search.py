@@ -242,10 +242,11 @@ def _best_of_each_name(done: Candidates, tried: Sequence[Candidate]) -> list[Can
 def _suggested(done: Candidates, best: Candidate) -> list[tuple[Hypothesis, float]]:
     """Hypotheses with one more effect, each with the growth of log L that it promises.
 
-    Those that the latent torque names (which promises no number, so they are all tried), and those that
-    promise more than they cost, best first.
+    Those that the latent torque names (which promises no number, so they are all tried, but where noise is
+    left), and those that promise more than they cost, best first.
     """
-    read = readings(best.point.hypothesis, done.problem.series)
+    is_noise = done.problem.is_noise(best.point.errors)
+    read = [] if is_noise else readings(best.point.hypothesis, done.problem.series)
     by_name = {one.hypothesis.names: one.hypothesis for one in reversed(read)}
     order = dict.fromkeys(one.hypothesis.names for one in read)
 

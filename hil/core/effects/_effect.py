@@ -125,7 +125,6 @@ class Effect:
         probes: the sizes that a diagnosis tries first.
         similar: effects that look like it, tried along with it.
         abrupt: errors have false minima in its size: fits are repeated from other sizes.
-        many_laws: formulas for it differ, so that one of them never closes a gap to the noise.
         forms: laws of other authors, each the numbers that it moves with the values to try them from: tried
             by a diagnosis where the effect as it is leaves more than noise, fitted in every other way.
         least: the smallest size worth naming; None: any that the data prove.
@@ -152,7 +151,6 @@ class Effect:
     probes: Probes | None = None
     similar: tuple[str, ...] = ()
     abrupt: bool = False
-    many_laws: bool = False
     forms: tuple[Mapping[str, tuple[float, ...]], ...] = ()
     least: Least | None = None
     needs_reversals: bool = False

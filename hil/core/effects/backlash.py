@@ -316,7 +316,6 @@ EFFECT = Effect(
     memory=Memory("rad", "where the shafts stand in the gap"),
     probes=_probes,
     abrupt=True,
-    many_laws=True,
     forms=(
         {"tension": (1.0,), "contact_damping_nms_rad": (0.0, *_DAMPINGS_NMS_RAD)},
         {"tension": (1.0,), "depth_damping_nms_rad2": (30.0, 300.0, 3000.0)},

@@ -191,6 +191,5 @@ EFFECT = Effect(
     memory=Memory("1", "friction over its level, while it turns around"),
     probes=_probes,
     similar=("running_resistance",),
-    many_laws=True,
     derived=_derived,
 )

@@ -77,6 +77,5 @@ EFFECT = Effect(
     memory=Memory("rad", "twist of the hysteretic path"),
     probes=_probes,
     similar=("coulomb_friction",),
-    many_laws=True,
     derived=_derived,
 )

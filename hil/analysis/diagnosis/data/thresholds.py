@@ -73,7 +73,7 @@ SPEEDS_UP: Annotated[
 ] = 0.05
 
 SLOW_UNPROVEN: Annotated[
-    float, Means("of the proven noise", "an error up to it may be called noise that is slow", "verdict")
+    float, Means("of the proven noise", "an error up to it may be called noise that is slow", "held_out")
 ] = 1.2
 
 

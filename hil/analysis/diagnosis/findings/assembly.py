@@ -24,7 +24,6 @@ from hil.analysis.diagnosis.findings.result import (
 )
 from hil.analysis.diagnosis.findings.separating import plan_file, plan_within_recordings, worth_a_plan
 from hil.analysis.diagnosis.findings.thresholds import CHANNEL_NOISES
-from hil.analysis.diagnosis.findings.verdict import open_channels
 from hil.analysis.diagnosis.findings.words import Where, band_of_gap, where_changed
 from hil.analysis.missing_effects import OUT_OF_TIME, Named, Outcome, Replay
 from hil.core.channels import OUTPUTS
@@ -185,23 +184,12 @@ def _verdict(
 ) -> tuple[Verdict, str]:
     """The verdict, and what stays where it is `unknown`: small effects are corrections, not findings."""
     verdict: Verdict = found.verdict
-    if verdict == "named" and effects and _stays_open(effects, shown):
-        verdict = "unknown"
     if verdict == "named" and not effects:
         verdict = "unknown" if _open(shown.after) else "none"
     doubt = unseen.words(verdict)
     if verdict == "none" and doubt:
         return "unknown", doubt
     return verdict, _remaining(found, shown) if verdict == "unknown" else ""
-
-
-def _stays_open(effects: tuple[NamedEffect, ...], shown: _Shown) -> bool:
-    """Whether a channel that had a gap near the noise keeps it: what is missing has another name, or none."""
-    before, after = (
-        np.array([gaps[name].noises if name in gaps else 0.0 for name in OUTPUTS])
-        for gaps in (shown.before, shown.after)
-    )
-    return any(open_channels([one.use.id for one in effects], before, after))
 
 
 def _remaining(found: Outcome, shown: _Shown) -> str:

@@ -46,50 +46,21 @@ WHEEL_RADIUS_M: Annotated[
 SLOW_KM_H: Annotated[float, Means("km/h", "speed of a chirp", "separating")] = 12.0
 FAST_KM_H: Annotated[float, Means("km/h", "speed from which the axle coasts", "separating")] = 36.0
 
-SHUT_BY_LAW: Annotated[
-    float,
-    Means(
-        "share of the gap's power",
-        "from it on where contact, dry friction or hysteresis is among the names: their laws are many",
-        "blind",
-    ),
-] = 0.9
-NOISELESS: Annotated[
-    float, Means("gap over noise", "above it what is left is a matter of formulas, not of noise", "blind")
-] = 100.0
 CHANNEL_NOISES: Annotated[
-    float, Means("gap over noise floor", "up to it a channel's gap is closed", "verdict")
+    float, Means("gap over noise floor", "up to it a channel's gap is closed", "held_out")
 ] = 1.5
 EVENT_S: Annotated[
     float,
-    Means("s", "over which a held-out recording may be far off: a limit met but once", "verdict"),
+    Means("s", "over which a held-out recording may be far off: a limit met but once", "held_out"),
 ] = 0.1
 EVENT_NOISES: Annotated[
     float,
     Means(
         "noise levels",
         "rms over that time from which on nothing explains it; noise itself never does",
-        "verdict",
+        "held_out",
     ),
 ] = 3.0
-CHANNEL_SHUT: Annotated[
-    float,
-    Means(
-        "share of a channel's gap in power",
-        "from it on the channel is closed: a quarter at most is left",
-        "verdict",
-    ),
-] = 0.95
-NOT_WORSE: Annotated[
-    float, Means("times the gap before", "of a channel that no chain meets: more would be worse", "verdict")
-] = 1.1
-HALVED: Annotated[
-    float, Means("of a channel's gap", "more may not stay of any, whatever the others do", "verdict")
-] = 0.5
-UNSEEN: Annotated[
-    float, Means("gap over noise floor", "below it a channel shows no gap that could be halved", "verdict")
-] = 1.15
-
 TOLERANCES: Annotated[
     float,
     Means(
