@@ -90,7 +90,8 @@ def promises(
     Args:
         asked: which effects are looked at; all of them when left out.
     """
-    if problem.model.kind == "rigid":  # its shaft torque leaps with a delay, where a slope sees it glide
+    leaps = problem.model.kind == "rigid" and any(one.has[2] for one in problem.series)
+    if leaps:  # its shaft torque with a delay, where a slope sees it glide
         at = at.holding([one.name == "torque_delay" for one in at.coordinates])
     project = Projection(problem, at)
     joining = [one for one in _asked(Scene(problem, at.point.hypothesis, at.point)) if asked(one[0][0])]
