@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._fit import Linearised, without
 from hil.analysis.missing_effects._hypothesis import Hypothesis
+from hil.analysis.missing_effects._odds import ALIKE
 from hil.analysis.missing_effects._problem import Problem
 from hil.core.effects import Direction
 
@@ -63,6 +64,7 @@ class Projection:
         self.plain = problem.each(lambda i: problem.simulated(i, packed, at.point.starts[i][None])[0])
         self.ends = np.cumsum([0, *map(len, at.bases)]).tolist()
         self.powers = at.point.powers(problem)
+        self.is_far = problem.log_prior(at.point.hypothesis) < -ALIKE
 
     def products(self, hypotheses: Sequence[Hypothesis]) -> Products:
         """Of the changes that hypotheses make, recording by recording."""
@@ -100,7 +102,7 @@ class Projection:
             which: of the hypotheses, the directions at their size.
         """
         found = self._taken_off(of, which, directions)
-        return replace(found, gain=found.gain - self.alone.gain)
+        return replace(found, gain=found.gain - max(self.alone.gain, 0.0))
 
     def _taken_off(self, of: Products, which: slice, directions: Sequence[Direction]) -> Explained:
         """What directions and numbers take off together.
@@ -117,7 +119,8 @@ class Projection:
         numbers, misfit = slice(len(directions), -1), -1
         rest = whole - octaves.sum(axis=(0, 1))
         prior = np.column_stack([one[self.ends[-1] :] for one in (self.at.slopes, self.at.left)])
-        rest[len(directions) :, len(directions) :] += prior.T @ prior
+        if not self.is_far:  # numbers that are far off would not all come back
+            rest[len(directions) :, len(directions) :] += prior.T @ prior
         had, stays = octaves[..., misfit, misfit], np.ones(octaves.shape[:2])
         best = Explained([1.0] * len(directions), np.zeros(len(self.at.coordinates)), -math.inf)
         for _ in range(1 if any(of.abrupt[which]) else _ROUNDS):
@@ -132,12 +135,14 @@ class Projection:
             rows = np.concatenate([-factors, moves, [1.0]])
             has = octaves @ rows @ rows
             stays = np.where(had > 0.0, np.maximum(has, 0.0) / np.maximum(had, 1e-300), 1.0)
-            gain = self.powers.growth(noise, stays) - 0.5 * float(
-                np.sum((prior @ rows[len(directions) :]) ** 2)
-            )
+            within = np.clip(moves, -1.0, 1.0)  # a factor e at most
+            away = prior @ rows[len(directions) :]
+            if self.is_far:
+                away = self.problem.prior(self.at.coordinates, within)
+            gain = self.powers.growth(noise, stays) + 0.5 * float(np.sum(prior[:, -1] ** 2) - np.sum(away**2))
             if gain < best.gain + _SETTLED:
                 break
-            best = Explained(factors.tolist(), np.clip(moves, -1.0, 1.0), gain)  # a factor e at most
+            best = Explained(factors.tolist(), within, gain)
         return best
 
 

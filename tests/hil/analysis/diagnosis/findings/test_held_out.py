@@ -6,6 +6,7 @@ import pytest
 from hil.analysis.diagnosis.data.gap import ChannelGap
 from hil.analysis.diagnosis.findings.held_out import Event, HeldOut, furthest
 from hil.analysis.diagnosis.findings.result import Verdict
+from hil.analysis.diagnosis.findings.thresholds import CHANNEL_NOISES
 from hil.core.channels import OUTPUTS
 from tests.hil.analysis.diagnosis.one_recording import NOISE, one_trace
 
@@ -30,6 +31,7 @@ def test_more_than_noise_is_told_whatever_the_verdict(verdict: Verdict) -> None:
 
 def test_beside_a_name_whose_law_may_differ_a_little_more_may_stay_than_beside_none() -> None:
     assert (held(a=1.3).open("none"), held(a=1.3).open("named")) == (("a",), ())
+    assert (held(a=CHANNEL_NOISES).open("named"), held(a=CHANNEL_NOISES + 0.01).open("named")) == ((), ("a",))
 
 
 def test_a_moment_that_is_far_off_counts_where_nothing_is_said_to_be_missing() -> None:
