@@ -107,7 +107,7 @@ def _least(
     counts: Array,
     start: Array,
 ) -> Array:
-    """The likeliest start, by Gauss and Newton's steps from another, with slopes as long as they lead on.
+    """The likeliest start, by Gauss and Newton's steps from another.
 
     Args:
         unsure: how far `first` may be off.
@@ -122,23 +122,17 @@ def _least(
 
     start = start.astype(float)
     left = rows(start)
-    solve: Array | None = None
     for _ in range(_ROUNDS):
-        if fresh := solve is None:
-            slopes = np.stack([(rows(start + one) - left) / one.sum() for one in np.diag(steps)[free]])
-            solve = np.linalg.pinv(slopes.T)
+        slopes = np.stack([(rows(start + one) - left) / one.sum() for one in np.diag(steps)[free]])
         step = np.zeros(len(start))
-        step[free] = -solve @ left
-        for _ in range(_HALVED if fresh else 1):
+        step[free] = -np.linalg.lstsq(slopes.T, left, rcond=None)[0]
+        for _ in range(_HALVED):
             after = rows(start + step)
             if after @ after < left @ left:
                 break
             step *= 0.5  # contact comes and goes on the way
         else:
-            if fresh:
-                break
-            solve = None  # slopes from further away no longer lead anywhere
-            continue
+            break
         had, has = left @ left, after @ after
         start, left = start + step, after
         if had - has < _SETTLED * has:
