@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from hil.analysis.missing_effects._noise import proven_noise
 from hil.analysis.missing_effects._problem import Problem, problem_of
@@ -22,6 +23,14 @@ NUMBERS = {
     "vehicle_inertia": 200.0,
     "torque_delay": 0.004,
 }
+#: A rigid axle.
+RIGID = {
+    "motor_inertia": 0.024,
+    "gear_ratio": 7.9,
+    "vehicle_inertia": 300.0,
+    "viscous_drag": 0.002,
+    "torque_delay": 8.1e-3,
+}
 #: Two motors on a shaft, as on benches that identify one.
 MOTORS = {
     "motor_inertia": 0.0048,
@@ -37,13 +46,18 @@ def chirp(noise: float, *effects: EffectUse) -> Recording:
     """A chirp of a chain with effects, each channel with so much noise of its standard deviation."""
     time = np.arange(20_000, dtype=np.float64) * 1e-3
     torque = 40.0 * np.sin(2.0 * np.pi * (0.5 * time + 0.7 * time**2))
-    channels = simulate(Model("two_inertia", NUMBERS, effects=effects), torque, 1e-3)
+    return driven(Model("two_inertia", NUMBERS, effects=effects), torque, noise)
+
+
+def driven(model: Model, torque: npt.NDArray[np.float64], noise: float) -> Recording:
+    """What a model shows of a torque at 1 kHz, each channel with so much noise of its standard deviation."""
+    time = np.arange(len(torque), dtype=np.float64) * 1e-3
     rng = np.random.default_rng(0)
     shown = {
         name: np.asarray(v + noise * np.std(v) * rng.normal(size=len(v)), dtype=np.float64)
-        for name, v in channels.items()
+        for name, v in simulate(model, torque, 1e-3).items()
     }
-    return Recording({"time_s": time, "motor_torque_ref_nm": torque} | shown, Path("chirp.csv"))
+    return Recording({"time_s": time, "motor_torque_ref_nm": torque} | shown, Path("driven.csv"))
 
 
 def chirp_problem(factor: float, *effects: EffectUse) -> Problem:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -16,9 +14,7 @@ from hil.analysis.missing_effects._screen import best_by_name, promises
 from hil.core.channels import OUTPUTS
 from hil.core.effects import Direction
 from hil.core.model import EffectUse, Model
-from hil.core.recording import Recording
-from hil.plant import simulate
-from tests.hil.analysis.missing_effects.chain import chirp_problem
+from tests.hil.analysis.missing_effects.chain import RIGID, chirp_problem, driven
 
 LATE = EffectUse("channel_skew", {"channel": OUTPUTS[1], "delay_s": 5e-4})
 GAIN = EffectUse("sensor_gain", {"channel": OUTPUTS[1], "gain": 1.02})
@@ -58,30 +54,13 @@ def test_what_runs_away_promises_nothing() -> None:
     assert project.explained(of, slice(0, 1), (Direction({}, 1.0, 1.0),)).gain < 0.0
 
 
-def _rigid(late_s: float) -> tuple[Model, Recording]:
-    """A rigid axle whose shaft torque is read late, driven by steps and a chirp."""
-    model = Model(
-        "rigid",
-        {
-            "motor_inertia": 0.024,
-            "gear_ratio": 7.9,
-            "vehicle_inertia": 300.0,
-            "viscous_drag": 0.002,
-            "torque_delay": 9.75e-3,
-        },
-    )
-    time = np.arange(16_000) * 1e-3
-    torque = 30.0 * np.sign(np.sin(2.0 * np.pi * 0.3 * time)) + 10.0 * np.sin(np.pi * time**2)
-    skewed = EffectUse("channel_skew", {"channel": OUTPUTS[2], "delay_s": late_s})
-    channels = simulate(model.with_effects(skewed), torque, 1e-3)
-    rng = np.random.default_rng(0)
-    shown = {name: one + rng.normal(0.0, 0.005 * np.std(one), len(one)) for name, one in channels.items()}
-    return model, Recording({"time_s": time, "motor_torque_ref_nm": torque} | shown, Path("steps.csv"))
-
-
 def test_a_late_shaft_torque_of_a_rigid_axle_is_no_dead_time() -> None:
     """Its slope by the dead time sees a step glide that leaps: it would leave nothing to be late."""
-    model, recording = _rigid(0.34e-3)
+    model = Model("rigid", RIGID | {"torque_delay": 9.75e-3})
+    time = np.arange(16_000) * 1e-3
+    torque = 30.0 * np.sign(np.sin(2.0 * np.pi * 0.3 * time)) + 10.0 * np.sin(np.pi * time**2)
+    skewed = EffectUse("channel_skew", {"channel": OUTPUTS[2], "delay_s": 0.34e-3})
+    recording = driven(model.with_effects(skewed), torque, 0.005)
     found = explain_gap(model, [recording])
     assert [one.id for one in found.effects] == ["channel_skew"]
     assert found.effects[0].use.values["channel"] == OUTPUTS[2]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -11,9 +9,7 @@ from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._search import _among_losses
 from hil.core.model import EffectUse, Model
-from hil.core.recording import Recording
-from hil.plant import simulate
-from tests.hil.analysis.missing_effects.chain import problem_about
+from tests.hil.analysis.missing_effects.chain import RIGID, driven, problem_about
 from tests.hil.analysis.missing_effects.two_masses import base, braked
 
 
@@ -38,23 +34,10 @@ def test_a_loss_that_bends_gives_way_to_a_dry_and_a_viscous_one() -> None:
 
 def test_a_dead_time_goes_to_the_likeliest_place_within_its_sample() -> None:
     """A rigid axle's shaft torque steps with the sample: no slope leads from 8.97 to the base's 8.1 ms."""
-    model = Model(
-        "rigid",
-        {
-            "motor_inertia": 0.024,
-            "gear_ratio": 7.9,
-            "vehicle_inertia": 300.0,
-            "viscous_drag": 0.002,
-            "torque_delay": 8.1e-3,
-        },
-    )
+    model = Model("rigid", RIGID)
     time = np.arange(12_000) * 1e-3
     torque = 40.0 * np.sign(np.sin(2.0 * np.pi * 0.3 * time)) + 10.0 * np.sin(2.0 * np.pi * 5.0 * time)
-    channels = simulate(model, torque, 1e-3)
-    rng = np.random.default_rng(0)
-    shown = {name: one + rng.normal(0.0, 0.01 * np.std(one), len(one)) for name, one in channels.items()}
-    recording = Recording({"time_s": time, "motor_torque_ref_nm": torque} | shown, Path("steps.csv"))
-    done = Candidates(problem_about(model, recording))
+    done = Candidates(problem_about(model, driven(model, torque, 0.01)))
     late = Hypothesis(model, {**model.parameters, "torque_delay": 8.97e-3})
     found = done.fitted(late, None)
     assert found.point.hypothesis.numbers["torque_delay"] == pytest.approx(8.1e-3, abs=0.2e-3)
