@@ -123,10 +123,8 @@ class Effect:
         makes: the model kind that a model is with it, where that is another.
         law: how it acts; memory: what it keeps from step to step.
         probes: the sizes that a diagnosis tries first.
-        similar: effects that look like it, tried along with it.
+        similar: effects that look like it.
         abrupt: errors have false minima in its size: fits are repeated from other sizes.
-        forms: laws of other authors, each the numbers that it moves with the values to try them from: tried
-            by a diagnosis where the effect as it is leaves more than noise, fitted in every other way.
         least: the smallest size worth naming; None: any that the data prove.
         needs_reversals: recordings in which the axle always turns one way hide it.
         together: why its values make no sense with the other effects of a model, by id, and the remedy; None
@@ -151,7 +149,6 @@ class Effect:
     probes: Probes | None = None
     similar: tuple[str, ...] = ()
     abrupt: bool = False
-    forms: tuple[Mapping[str, tuple[float, ...]], ...] = ()
     least: Least | None = None
     needs_reversals: bool = False
     derived: Callable[[Mapping[str, float]], Mapping[str, float]] | None = None

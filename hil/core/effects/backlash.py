@@ -316,10 +316,5 @@ EFFECT = Effect(
     memory=Memory("rad", "where the shafts stand in the gap"),
     probes=_probes,
     abrupt=True,
-    forms=(
-        {"tension": (1.0,), "contact_damping_nms_rad": (0.0, *_DAMPINGS_NMS_RAD)},
-        {"tension": (1.0,), "depth_damping_nms_rad2": (30.0, 300.0, 3000.0)},
-        {"one_spring": (1.0,), "contact_depth_rad": (2e-4, 1e-3)},
-    ),
     derived=_derived,
 )
