@@ -195,13 +195,15 @@ def _alike(effect: dict[str, Any]) -> list[str]:
 
 def _answer(case: Case) -> dict[str, Any]:
     found = diagnose(case.model, case.recordings, case.holdout)
-    gaps = found.holdout_after or found.gap_after
+    said = found.as_json()
+    stated = said["holdout_gap"] or said["gap"]
+    gaps = {name: one["after"] for name, one in stated.items() if name in case.recordings[0]}
     try:
         back = _gaps(found.model, case.holdout or case.recordings, tuple(gaps))
     except HilError:  # too stiff to be simulated as users do it
         back = dict.fromkeys(gaps, float("inf"))
-    return found.as_json() | {
-        "given_back": [back[name] / gaps[name].gap for name in gaps],
+    return said | {
+        "given_back": [back[name] / gaps[name] for name in gaps],
         "official": case.official(found.model),
     }
 

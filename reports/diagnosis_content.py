@@ -159,9 +159,9 @@ def parts(found: Diagnosis) -> list[Part]:
 def _gaps(found: Diagnosis) -> tuple[Table, ...]:
     """One table for the fitted recordings, one for those held out."""
     tables = []
-    for name, before, after in (
-        ("fitted recordings", found.gap_before, found.gap_after),
-        ("held-out recordings", found.holdout_before, found.holdout_after),
+    for name, before, after, angles in (
+        ("fitted recordings", found.gap_before, found.gap_after, found.angles),
+        ("held-out recordings", found.holdout_before, found.holdout_after, found.holdout_angles),
     ):
         rows = tuple(
             (
@@ -171,6 +171,14 @@ def _gaps(found: Diagnosis) -> tuple[Table, ...]:
                 labels.factor(after[c].noises),
             )
             for c in after
+        ) + tuple(  # it adds up what a speed leaves: times its noise it would say nothing
+            (
+                channel_label(c).text,
+                *(labels.share(v, 2, digits=3) for v in _figures(*both)),
+                labels.DASH,
+                labels.DASH,
+            )
+            for c, both in angles.items()
         )
         if rows:
             head = (name, "before", "after", "noise floor", "before / noise", "after / noise")

@@ -31,6 +31,8 @@ _SHORT = {
     "driving_torque_ref_nm": "Driving torque, reference",
     "driving_torque_est_nm": "Driving torque, estimate",
     "dyno_torque_ref_nm": "Load torque",
+    "motor_angle_rad": "Motor angle",
+    "wheel_angle_rad": "Wheel angle",
 }
 _KNOWN = re.compile(
     r"(?<!\w)("
@@ -170,7 +172,7 @@ def share(value: float | None, decimals: int = 1, *, digits: int = 1, signed: bo
         return DASH
     text = plain_share(value, decimals, digits=digits, signed=signed)
     text = re.sub(r"e([+-]\d+)", lambda found: f" × 10{_superscript(int(found[1]))}", text)
-    text = re.sub(r"\d{5,}", lambda found: f"{int(found[0]):,}".replace(",", THIN), text)
+    text = re.sub(r"(?<![\d.])\d{5,}", lambda found: f"{int(found[0]):,}".replace(",", THIN), text)
     return text.replace(" ", THIN).replace("-", MINUS)
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 
-from benchmarks.real_data.measured import SPEED, DataSet, Measured, matlab, one_mass, torque_and_speed
+from benchmarks.real_data.measured import DataSet, Measured, matlab, one_mass
+from hil.core.channels import INPUT, MOTOR_ANGLE, TIME
 from hil.core.model import Model
 from hil.core.recording import Recording
 from hil.plant import replay
@@ -17,7 +17,7 @@ _FIRST = 20  # samples of the test that may set a state
 
 
 def _recording(path: Path) -> Recording:
-    """Force by drive voltage times gain, in N; speed by central differences of the encoder, in m/s.
+    """Force by drive voltage times gain, in N; the position as its encoder gives it, in m.
 
     The force pulses of the second file are part of its drive voltage: its authors' own script leaves them
     out of the force that it explains by mass and friction.
@@ -25,7 +25,7 @@ def _recording(path: Path) -> Recording:
     data = matlab(path, ("t", "qm", "vir", "gtau"))
     time_s, position_m, voltage = (data[name].ravel() for name in ("t", "qm", "vir"))
     force_n = voltage * float(data["gtau"].item())
-    return torque_and_speed(path, time_s, force_n, np.gradient(position_m, time_s))
+    return Recording({TIME: time_s - time_s[0], INPUT: force_n, MOTOR_ANGLE: position_m}, path)
 
 
 def _read(directory: Path) -> Measured:
@@ -41,9 +41,7 @@ def _read(directory: Path) -> Measured:
 def _official(directory: Path, model: Model) -> str:
     """Root mean square error of the position of the pulses, simulated from rest where they begin."""
     held = _recording(directory / _HELD)
-    measured = matlab(directory / _HELD, ("qm",))["qm"].ravel()
-    moved = cumulative_trapezoid(replay(model, held)[SPEED], held.time_s, initial=0)
-    error = measured - measured[0] - moved
+    error = held[MOTOR_ANGLE] - replay(model, held)[MOTOR_ANGLE]
     return f"official window: position rmse {1e3 * float(np.sqrt(np.mean(error[_FIRST:] ** 2))):.2f} mm"
 
 

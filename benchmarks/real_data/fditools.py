@@ -1,6 +1,6 @@
 """Two motors on a shaft, driven by multisines (Motor Bench of FdiTools, W. Ohnishi et al.; MIT licence).
 
-Each of two recordings is there twice: with speeds by the encoders, and with those that the drive computes,
+Each of two recordings is there twice: with the encoders' angles, and with speeds that the drive computes,
 which its own low pass makes late. Currents in A stand for N m: the authors give no torque constant, and with
 1 N m/A inertias and stiffness of the shaft keep their ratios.
 """
@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.real_data.measured import Array, DataSet, Measured, matlab
-from hil.core.channels import INPUT, OUTPUTS, TIME
+from hil.core.channels import INPUT, MOTOR_ANGLE, OUTPUTS, TIME, WHEEL_ANGLE
 from hil.core.model import Model
 from hil.core.recording import Recording
 
@@ -30,10 +30,9 @@ _START = {
 }
 
 
-def _recording(path: Path, motor: Array, load: Array, torque_nm: Array) -> Recording:
+def _recording(path: Path, torque_nm: Array, motion: dict[str, Array]) -> Recording:
     time_s = np.arange(len(torque_nm)) / _RATE_HZ
-    speeds = dict(zip(OUTPUTS[:2], (motor, load), strict=True))
-    return Recording({TIME: time_s, INPUT: torque_nm, **speeds}, path)
+    return Recording({TIME: time_s, INPUT: torque_nm, **motion}, path)
 
 
 def _split(whole: Recording) -> Measured:
@@ -43,17 +42,17 @@ def _split(whole: Recording) -> Measured:
 
 
 def _by_encoders(path: Path) -> Measured:
-    """Speeds by central differences of the encoders' angles; the load's encoder counts the other way."""
+    """Angles as the encoders give them; the load's counts the other way."""
     data = matlab(path, ("iq_adx", "theta_mx", "theta_my"))
     current, motor, load = (data[name].ravel() for name in ("iq_adx", "theta_mx", "theta_my"))
-    return _split(_recording(path, np.gradient(motor) * _RATE_HZ, -np.gradient(load) * _RATE_HZ, current))
+    return _split(_recording(path, current, {MOTOR_ANGLE: motor, WHEEL_ANGLE: -load}))
 
 
 def _by_drive(path: Path) -> Measured:
     """Speeds as the drive gives them."""
     data = matlab(path, ("iq_adx", "omega_max", "omega_may"))
     current, motor, load = (data[name].ravel() for name in ("iq_adx", "omega_max", "omega_may"))
-    return _split(_recording(path, motor, -load, current))
+    return _split(_recording(path, current, dict(zip(OUTPUTS[:2], (motor, -load), strict=True))))
 
 
 def _data_set(name: str, letter: str, expected: str, *, drive: bool) -> DataSet:

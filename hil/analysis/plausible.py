@@ -10,7 +10,7 @@ from itertools import combinations
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.channels import INPUT, OUTPUTS, TIME
+from hil.core.channels import ANY_OUTPUT, INPUT, MOTOR_ANGLE, TIME, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
 
@@ -19,7 +19,7 @@ Array = npt.NDArray[np.float64]
 #: In the channel's SI unit: hundreds of thousands of times what an axle can.
 LARGEST_VALUE = 1e9
 #: Without a gear and without compliance these two are one and the same.
-_SAME_IF_DIRECT = {"motor_speed_rad_s", "wheel_speed_rad_s"}
+_SAME_IF_DIRECT = [{"motor_speed_rad_s", "wheel_speed_rad_s"}, {MOTOR_ANGLE, WHEEL_ANGLE}]
 
 
 def refuse_implausible(recording: Recording) -> None:
@@ -29,10 +29,10 @@ def refuse_implausible(recording: Recording) -> None:
         BadInputError: time does not increase, a value is not finite or beyond 1e9 in SI units, or two
             channels that move are equal at every sample; names channels, and time or file.
     """
-    names = [name for name in (INPUT, *OUTPUTS) if name in recording]
+    names = [name for name in (INPUT, *ANY_OUTPUT) if name in recording]
     where = str(recording.source)
     seen = {name: _Seen() for name in names}
-    alike = [pair for pair in combinations(names, 2) if set(pair) != _SAME_IF_DIRECT]
+    alike = [pair for pair in combinations(names, 2) if set(pair) not in _SAME_IF_DIRECT]
     last_s = np.zeros(0)
     for first, rows in recording.blocks((TIME, *names)):
         _refuse_backwards(np.concatenate([last_s, rows[TIME]]), first - len(last_s), where)
@@ -94,8 +94,8 @@ def same_data(one: Recording, other: Recording) -> bool:
 
     Names of files, further channels and a shift of all time stamps do not matter.
     """
-    names = [name for name in (INPUT, *OUTPUTS) if name in one]
-    if names != [name for name in (INPUT, *OUTPUTS) if name in other] or one is other:
+    names = [name for name in (INPUT, *ANY_OUTPUT) if name in one]
+    if names != [name for name in (INPUT, *ANY_OUTPUT) if name in other] or one is other:
         return one is other
     if one.samples != other.samples:
         return False

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.channels import INPUT, OUTPUTS, TIME
+from hil.core.channels import ANY_OUTPUT, INPUT, TIME
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
 
@@ -38,7 +38,7 @@ def unbroken(recording: Recording, load: str = "") -> list[Recording]:
     """
     if recording.samples < 2:
         return [recording]
-    gaps = _gaps(recording, {INPUT, *OUTPUTS, load})
+    gaps = _gaps(recording, {INPUT, *ANY_OUTPUT, load})
     if not gaps:
         return [recording]
     behind = np.maximum.accumulate([gap.after for gap in gaps]).tolist()

@@ -43,6 +43,10 @@ _ALL = (
     Channel("driving_torque_ref_nm", "N m", "rF_d*", "requested driving torque"),
     Channel("driving_torque_est_nm", "N m", "rF̂_d", "driving torque estimated by the observer"),
     Channel("dyno_torque_ref_nm", "N m", "T_dyno", "load torque of the dynos, left plus right"),
+    Channel("motor_angle_rad", "rad", "θ_m", "rotor angle relative to the housing, as an encoder gives it"),
+    Channel(
+        "wheel_angle_rad", "rad", "θ_l", "wheel angle at the dynos, as an encoder gives it; orders follow it"
+    ),
 )
 
 CHANNELS: dict[str, Channel] = {channel.name: channel for channel in _ALL}
@@ -57,8 +61,11 @@ def unit_of(name: str) -> str:
     return next((unit for ending, unit in _UNITS.items() if name.endswith(ending)), "")
 
 
-#: Not measured but integrated: the angle that order disturbances follow, from the start of a run.
-WHEEL_ANGLE = "wheel_angle_rad"
+MOTOR_ANGLE, WHEEL_ANGLE = "motor_angle_rad", "wheel_angle_rad"
 TIME = "time_s"
 INPUT = "motor_torque_ref_nm"
 OUTPUTS = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
+#: The angle that stands for an output where that was not recorded.
+ANGLES = {OUTPUTS[0]: MOTOR_ANGLE, OUTPUTS[1]: WHEEL_ANGLE}
+#: What a recording needs one of.
+ANY_OUTPUT = (*OUTPUTS, *ANGLES.values())

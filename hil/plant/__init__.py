@@ -1,16 +1,26 @@
 """The plant: a model file turned into motion by a compiled kernel."""
 
+from hil.plant._angles import (
+    TURNED_OVER_S,
+    angle_at,
+    angle_of,
+    as_read,
+    by_angle,
+    half_window,
+    speed_of,
+    turned,
+)
 from hil.plant._batch_simulation import ideal_sensors, simulate_many
 from hil.plant._linear import LinearSystem, linear_system, linear_system_of, system
 from hil.plant._motor_limits import refuse_motor_limits
 from hil.plant._packed_sets import begins_of, turns
-from hil.plant._recorded import turned
 from hil.plant._replay import Start, gear_ratio_of, load_of, replay, replayed, simulate
 from hil.plant._stability import LONGEST_STEP_S, is_stable, refuse_diverged_state, refuse_too_stiff
 from hil.plant.sensors import DELAY as SENSOR_DELAY
 from hil.plant.sensors import GAIN as SENSOR_GAIN
 from hil.plant.sensors import OFFSET as SENSOR_OFFSET
 from hil.plant.sensors import STEP as SENSOR_STEP
+from hil.plant.sensors import TURNED as SENSOR_TURNED
 from hil.plant.sensors import bench_sensor, sensor_of, sensor_response
 from hil.plant.slots import chain_numbers, pack
 
@@ -20,12 +30,19 @@ __all__ = [
     "SENSOR_GAIN",
     "SENSOR_OFFSET",
     "SENSOR_STEP",
+    "SENSOR_TURNED",
+    "TURNED_OVER_S",
     "LinearSystem",
     "Start",
+    "angle_at",
+    "angle_of",
+    "as_read",
     "begins_of",
     "bench_sensor",
+    "by_angle",
     "chain_numbers",
     "gear_ratio_of",
+    "half_window",
     "ideal_sensors",
     "is_stable",
     "linear_system",
@@ -41,6 +58,7 @@ __all__ = [
     "sensor_response",
     "simulate",
     "simulate_many",
+    "speed_of",
     "system",
     "turned",
     "turns",

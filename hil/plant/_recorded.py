@@ -1,6 +1,6 @@
-"""What a replay takes from a recording: where it begins, and the angles that its ripples follow.
+"""Where the replay of a recording begins: at what first samples show, within their noise.
 
-It begins at what first samples show, and within their noise where the next seconds suit best.
+There it begins where the next seconds suit best.
 A speed read from twenty samples is off by a quarter of their noise. Without drag a replay keeps that offset
 to its end, which no model is to blame for.
 """
@@ -138,23 +138,3 @@ def _least(
         if had - has < _SETTLED * has:
             break
     return start
-
-
-def turned(samples: Array, dt: float, gear_ratio: float, first_wheel_angle_rad: float = 0.0) -> Array:
-    """Wheel and rotor angle in rad at every sample (n x 2), by the trapezoidal rule.
-
-    A simulated angle drifts off as long as a model is not right to the last digit, and takes the phase of a
-    ripple with it; the measured one does not.
-
-    Args:
-        samples: n x 2 or more, motor and wheel speed in rad/s; a column of NaN follows from the other.
-    """
-    motor, wheel = samples[:, 0], samples[:, 1]
-    if not np.isfinite(wheel[0]):
-        wheel = motor / gear_ratio
-    if not np.isfinite(motor[0]):
-        motor = wheel * gear_ratio
-    speeds = np.nan_to_num(np.column_stack([wheel, motor]))
-    ways = np.cumsum(0.5 * dt * (speeds[1:] + speeds[:-1]), axis=0)
-    first = first_wheel_angle_rad * np.array([1.0, gear_ratio])
-    return np.asarray(first + np.concatenate([np.zeros((1, 2)), ways]), dtype=float)

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.channels import INPUT, OUTPUTS, TIME, WHEEL_ANGLE
+from hil.core.channels import ANGLES, INPUT, OUTPUTS, TIME, WHEEL_ANGLE
 from hil.core.effects import EFFECTS, Stage
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
-from hil.plant import _recorded, kernel, slots
+from hil.plant import _angles, _recorded, kernel, slots
 from hil.plant._batch_simulation import simulate_many
 from hil.plant._functions import respond_many
 from hil.plant._stability import LONGEST_STEP_S, refuse_divergence, refuse_too_stiff
@@ -117,7 +117,8 @@ def replay(model: Model, recording: Recording) -> Recording:
 
     It begins at what the first samples show, within their noise where the next seconds suit best. Ripples
     follow the angle that recorded speeds turn through. Where the model has a `load_input`, that channel
-    brakes its wheels. Uneven time stamps are resampled (input held, load and outputs interpolated); `notes`
+    brakes its wheels. Where an angle was recorded in place of a speed, both are given, the angle from its
+    first reading on. Uneven time stamps are resampled (input held, load and outputs interpolated); `notes`
     says so.
 
     Raises:
@@ -138,10 +139,13 @@ def replay(model: Model, recording: Recording) -> Recording:
         notes.append(f"time stamps are uneven: simulated every {dt * 1e3:g} ms, interpolated back")
     else:
         dt = float((time[-1] - time[0]) / (len(time) - 1))
-    recorded = _on_grid(recording, grid)
+    recorded, of_angle = _on_grid(recording, grid), _angles.by_angle(recording)
     angle = float(recording[WHEEL_ANGLE][0]) if WHEEL_ANGLE in recording else 0.0
-    channels = replayed(model, torque, dt, recorded, load, angle)
+    channels = replayed(model, torque, dt, recorded, load, angle, of_angle)
     refuse_divergence(channels, grid, model)
+    for name in (one for one, turns in zip(OUTPUTS, of_angle, strict=True) if turns and one in channels):
+        first = float(_angles.angle_at(recording, ANGLES[name], grid[:1])[0])
+        channels[ANGLES[name]] = _angles.angle_of(channels[name], dt, first)
     if not even:
         channels = {name: np.interp(time, grid, values) for name, values in channels.items()}
     inputs = {name: recording[name] for name in (INPUT, model.load_input) if name}
@@ -160,7 +164,7 @@ def _along(
         start.vehicle_ahead_rad_s, start.tyre_twist_rad,
     ]])  # fmt: skip
     sensors = np.stack([sensor_of(model, name) for name in OUTPUTS])[None]
-    angles = _recorded.turned(recorded, dt, ratio, start.wheel_angle_rad)
+    angles = _angles.turned(recorded, dt, ratio, start.wheel_angle_rad)
     rests = start.motor_torque_nm is not None  # a sample before the first shows that no torque has acted
     if rests:
         torque = np.concatenate([[start.motor_torque_nm], torque])
@@ -178,6 +182,7 @@ def replayed(
     recorded: Array,
     load_nm: Array | None = None,
     wheel_angle_rad: float = 0.0,
+    of_angle: _angles.Flags = _angles.SPEEDS,
 ) -> dict[str, Array]:
     """What `replay` simulates, of arrays: channels of shape (n,).
 
@@ -186,8 +191,9 @@ def replayed(
         recorded: n x 3, in the order of `OUTPUTS`; NaN where a channel was not recorded.
         load_nm: shape (n,), brakes the wheels.
         wheel_angle_rad: at the first sample.
+        of_angle: (3,), which speeds of `recorded` are those of an angle (`speed_of`).
     """
-    start = settled_start(model, torque_nm, dt, recorded, load_nm, wheel_angle_rad)
+    start = settled_start(model, torque_nm, dt, recorded, load_nm, wheel_angle_rad, of_angle)
     channels = simulate(model, torque_nm, dt, start, load_nm=load_nm)
     if any(EFFECTS[use.id].law.follows is not None for use in model.effects):
         channels |= _along(model, torque_nm, dt, start, recorded, load_nm)
@@ -218,14 +224,17 @@ def _rests(model: Model, shaft_torque_nm: float, torque_nm: float) -> bool:
 
 
 def _on_grid(recording: Recording, grid: Array) -> Array:
-    """The outputs at the times of a grid, n x 3; NaN where a channel was not recorded."""
-    columns = [
-        np.interp(grid, recording.time_s, recording[name])
-        if name in recording
-        else np.full(len(grid), np.nan)
-        for name in OUTPUTS
-    ]
-    return np.column_stack(columns)
+    """The outputs at the even times of a grid, n x 3; NaN where neither they nor an angle were recorded."""
+
+    def column(name: str, turns: bool) -> Array:
+        if turns:
+            return _angles.speed_of(_angles.angle_at(recording, ANGLES[name], grid), float(grid[1] - grid[0]))
+        if name not in recording:
+            return np.full(len(grid), np.nan)
+        return np.interp(grid, recording.time_s, recording[name])
+
+    each = zip(OUTPUTS, _angles.by_angle(recording).tolist(), strict=True)
+    return np.column_stack([column(name, turns) for name, turns in each])
 
 
 def settled_start(
@@ -235,6 +244,7 @@ def settled_start(
     measured: Array,
     load_nm: Array | None = None,
     wheel_angle_rad: float = 0.0,
+    of_angle: _angles.Flags = _angles.SPEEDS,
 ) -> Start:
     """Where a replay begins: at what first samples show, within their noise where the next seconds suit best.
 
@@ -242,6 +252,7 @@ def settled_start(
         torque_nm: shape (n,), held for `dt` seconds each.
         measured: n x 3, in the order of `OUTPUTS`; NaN where a channel was not recorded.
         load_nm: shape (n,), brakes the wheels.
+        of_angle: (3,), which of the speeds are those of an angle.
     """
     count = min(len(torque_nm), round(_recorded.SECONDS / dt))
     torque, measured = torque_nm[:count], measured[:count]
@@ -255,6 +266,8 @@ def settled_start(
         read = np.where(np.isfinite(read), read, followed * read[[1, 0, 2]])
         errors = np.where(np.isfinite(errors), errors, followed * errors[[1, 0, 2]])
     read, errors = np.nan_to_num(read), np.nan_to_num(errors)
+    moves = np.abs(measured[min(_angles.half_window(dt), count - 1)] - measured[0])
+    errors = errors + np.where(of_angle, np.nan_to_num(moves), 0.0)  # what first readings of an angle turn by
     rests = _rests(model, float(read[2]), float(torque[0]))
     stands = np.all(np.abs(read[:2]) <= errors[:2])
     unread = np.zeros(2) if stands else _behind_a_tyre(model, torque, measured)
@@ -267,7 +280,8 @@ def settled_start(
     def show(at: Array) -> Array:
         load = None if load_nm is None else load_nm[:count]
         channels = simulate(model, torque, dt, from_states(at), load_nm=load)
-        return np.column_stack([channels.get(name, np.full(count, np.nan)) for name in OUTPUTS])
+        shown = np.column_stack([channels.get(name, np.full(count, np.nan)) for name in OUTPUTS])
+        return _angles.as_read(shown, of_angle, dt)
 
     shows = _by_superposition(show, read) if _is_linear(model) else show
     return from_states(_recorded.settled(read, errors, _unrecorded(model, torque, dt), measured, shows))

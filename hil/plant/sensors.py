@@ -1,7 +1,8 @@
 """Effects between the truth and the recorded channel: one law for replay, for many models and for the bench.
 
 A sensor reads gain · lagged truth(t - delay) + offset + noise, rounded to its step. A negative delay makes a
-recorded channel early; the bench, whose control acts on what it reads, cannot give that.
+recorded channel early; the bench, whose control acts on what it reads, cannot give that. In place of a speed
+a recording may have its angle (`_angles`): then the truth is what that turns by around each sample.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.runtime.compiled import compiled, inlined
+from hil.plant._angles import mean_around
 from hil.plant.slots import Table
 
 Array = npt.NDArray[np.float64]
@@ -27,6 +29,7 @@ OFFSET = _column("offset", "channel's", "added after the gain")
 DELAY = _column("delay_s", "s", "delay of the channel")
 STEP = _column("step", "channel's", "distance between readings; 0: not rounded")
 LAG = _column("lag_s", "s", "time constant of a first-order low-pass; 0: none")
+TURNED = _column("turned_over_s", "s", "within which an angle is read in place of a speed; 0: a speed")
 COLUMNS = len(SENSOR)
 
 
@@ -111,6 +114,8 @@ def _means(truth, sensor, dt, block, out):  # type: ignore[no-untyped-def]
 @compiled
 def record(truth, sensor, dt, block, out):  # type: ignore[no-untyped-def]
     """Means over `block` samples of what a sensor reads of `truth`, which holds its ends beyond them."""
+    if sensor[TURNED] > 0.0 and truth.shape[0] > 1:
+        truth = mean_around(truth, max(1, round(0.5 * sensor[TURNED] / dt)))
     if sensor[LAG] > 0.0 and truth.shape[0] > 0:
         _means(_low_passed(truth, sensor[LAG], dt), sensor, dt, block, out)
     else:
@@ -146,7 +151,7 @@ def sensor_of(model: Model, channel: str) -> Array:
 def sensor_response(sensors: Array, frequency_hz: Array) -> npt.NDArray[np.complex128]:
     """Response of readings to truths at frequencies, rows of `sensor_of` x frequencies; rounding left out."""
     s = 2j * np.pi * frequency_hz
-    late = np.exp(-s * sensors[:, DELAY, None])
+    late = np.exp(-s * sensors[:, DELAY, None]) * np.sinc(frequency_hz * sensors[:, TURNED, None])
     return np.asarray(sensors[:, GAIN, None] * late / (1.0 + s * sensors[:, LAG, None]))
 
 

@@ -1,9 +1,13 @@
 from __future__ import annotations
 
 import math
+import re
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from hil.core.errors.wording import share as plain_share
 from reports import labels
 
 
@@ -69,3 +73,20 @@ def test_a_factor_has_digits_that_mean_something() -> None:
     assert labels.factor(1.0512) == "1.05"
     assert labels.factor(3392320.78) == ">\u202f1000"
     assert labels.factor(None) == "–"
+
+
+@given(st.floats(1e-9, 1e3))
+def test_a_share_is_the_same_number_in_a_report_and_on_the_command_line(share: float) -> None:
+    """Zeros behind a decimal point are no thousands: 0.00719 % was 0.719 %."""
+    set_, plain = labels.share(share, 2, digits=3), plain_share(share, 2, digits=3)
+    assert "".join(set_.split()).replace("×10", "e").translate(_SUPERSCRIPTS) == _as_set(
+        "".join(plain.split())
+    )
+
+
+def _as_set(plain: str) -> str:
+    """The exponent without its leading zero."""
+    return re.sub(r"e-0?(\d+)", r"e-\1", plain)
+
+
+_SUPERSCRIPTS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹−", "-0123456789-")

@@ -13,9 +13,11 @@ from hil.analysis.diagnosis.findings.assembly import diagnosis_of
 from hil.analysis.diagnosis.findings.result import Diagnosis
 from hil.analysis.missing_effects import explain_gap
 from hil.analysis.plausible import refuse_same_data, within_floating_point
+from hil.core.channels import ANGLES, OUTPUTS
+from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
-from hil.plant import refuse_motor_limits
+from hil.plant import by_angle, refuse_motor_limits
 from hil.plant.sides import refuse_separate
 
 
@@ -45,11 +47,13 @@ def diagnose(
 
     Raises:
         BadInputError: the recordings cannot belong to the model (inverted, swapped, dead, clipped, wrong
-            gear ratio, values that no axle gives), hold the same data twice, or have no output of the model.
+            gear ratio, values that no axle gives), hold the same data twice, have no output of the model, or
+            differ in whether they have a speed or its angle.
     """
     refuse_separate(model, "a diagnosis")
     refuse_motor_limits(model, "a diagnosis")
     refuse_same_data(recordings, holdout)
+    _refuse_mixed([*recordings, *holdout])
     asked = Asked.checked({**stated_noise([*recordings, *holdout]), **(noise or {})}, least or {}, at_most_s)
     with within_floating_point(", ".join(str(r.source) for r in recordings)):
         show("reading the recordings")
@@ -59,3 +63,16 @@ def diagnose(
         notes = [f"{t.name}: {n}" for t in seen.traces for n in t.notes] + seen.notes
         found = explain_gap(model, fitted, unseen, noise=asked.noise, at_most_s=asked.at_most_s, show=show)
         return diagnosis_of(found, model, asked, notes)
+
+
+def _refuse_mixed(recordings: Sequence[Recording]) -> None:
+    """Noise of a speed and of an angle are not one: a channel is either in all recordings that have it."""
+    for column, speed in enumerate(OUTPUTS):
+        turning = [str(one.source) for one in recordings if by_angle(one)[column]]
+        going = [str(one.source) for one in recordings if speed in one]
+        if turning and going:
+            raise BadInputError(
+                f"has {ANGLES[speed]} and no {speed}, and {going[0]} has that",
+                where=turning[0],
+                fix="give the same of the two in every recording; the angle, where the speed was made of it",
+            )

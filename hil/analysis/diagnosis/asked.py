@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hil.core.channels import OUTPUTS
+from hil.core.channels import ANY_OUTPUT
 from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError
 
@@ -40,7 +40,7 @@ class Asked:
                 where="--at-most",
                 fix="give minutes above 0",
             )
-        _refuse(noise, OUTPUTS, ("--noise", "channel", "standard deviation"))
+        _refuse(noise, ANY_OUTPUT, ("--noise", "channel", "standard deviation"))
         _refuse(least, tuple(EFFECTS), ("--least", "effect", "size"))
         return cls(dict(noise), dict(least), at_most_s)
 

@@ -15,10 +15,11 @@ from scipy import fft
 from hil.analysis.frequency_response._outside import split_by_motion
 from hil.analysis.frequency_response._quality import UnfitDataError
 from hil.analysis.plausible import refuse_implausible
-from hil.core.channels import INPUT, OUTPUTS, TICK_S, TIME
+from hil.core.channels import ANGLES, INPUT, OUTPUTS, TICK_S, TIME
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording, run_of
 from hil.core.result import Segment
+from hil.plant import angle_at
 
 Array = npt.NDArray[np.float64]
 
@@ -153,14 +154,19 @@ def _choose(known: Sequence[Segment], wanted: Sequence[str], where: str) -> list
 def _experiment(
     recording: Recording, name: str, kind: str, input_channel: str, to_hz: float, hold_s: float | None
 ) -> Experiment:
-    outputs = tuple(output for output in OUTPUTS if output in recording)
-    names = [input_channel, *outputs]
+    read_from = {output: output if output in recording else ANGLES.get(output, "") for output in OUTPUTS}
+    outputs = tuple(output for output, channel in read_from.items() if channel in recording)
+    names = [input_channel, *(read_from[output] for output in outputs)]
     if REFERENCE in recording and np.all(np.isfinite(recording[REFERENCE])):
         names.append(REFERENCE)
-    raw = np.array([recording[channel] for channel in names])
+    raw = np.array([_readings(recording, channel) for channel in names])
     if raw.shape[1] < 2:
         raise UnfitDataError("too_short", f"has {raw.shape[1]} samples", where=name)
     values, step, notes = _even(recording[TIME], raw, to_hz, name)
+    for row, output in enumerate(outputs, start=1):
+        if read_from[output] != output:
+            values[row] = _slope(values[row], step)
+            notes = (*notes, f"{output} is the slope of {read_from[output]}")
     return Experiment(
         name,
         step,
@@ -173,6 +179,21 @@ def _experiment(
         tuple(recording.notes) + notes,
         input_channel,
     )
+
+
+def _readings(recording: Recording, channel: str) -> Array:
+    """Of a channel; an angle that begins again with every turn goes on."""
+    if channel in ANGLES.values():
+        return angle_at(recording, channel, recording.time_s)
+    return recording[channel]
+
+
+def _slope(values: Array, step: float) -> Array:
+    """Of a cubic spline through values: right to 0.2 % up to an eighth of the rate."""
+    from scipy.interpolate import CubicSpline  # slow to import
+
+    time = step * np.arange(len(values))
+    return np.asarray(CubicSpline(time, values).derivative()(time))
 
 
 def _even(time: Array, values: Array, to_hz: float, where: str) -> tuple[Array, float, tuple[str, ...]]:

@@ -20,7 +20,6 @@ from hil.analysis.missing_effects._phase import tracked
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._projection import Projection
 from hil.analysis.missing_effects._screen import may_join
-from hil.analysis.missing_effects._spectrum import white
 from hil.core.effects import EFFECTS
 
 _SETTLED = 0.1  # growth of log likelihood between rounds that ends them
@@ -111,7 +110,7 @@ class Candidates:
         if goes_on:
             problem = self.weighed_as(best)
         elif hypothesis.kind == "rigid":  # slow errors of a mass are friction; a chain's bend its resonances
-            problem = problem.weighed_by(white(problem.noise, problem.rate_hz))
+            problem = problem.weighed_by_noise()
         for number in range(rounds if rounds < ROUNDS else MOST_ROUNDS):
             # slow misfit would trade a dead time for anything, until errors are weighed by their colour
             point = fit(problem, point, held if number or goes_on else held | {"torque_delay"})

@@ -20,7 +20,6 @@ from hil.analysis.missing_effects._outcome import Outcome, Replay
 from hil.analysis.missing_effects._problem import Problem, problem_of
 from hil.analysis.missing_effects._search import search
 from hil.analysis.missing_effects._series import series_of
-from hil.analysis.missing_effects._spectrum import white
 from hil.analysis.missing_effects._verdict import Judged, as_far_as_known, judged
 from hil.core.model import Model
 from hil.core.recording import Recording
@@ -56,7 +55,7 @@ def explain_gap(
     began = time.perf_counter()
     series = series_of(model, recordings)
     levels = proven_noise(series, noise or {})
-    problem = problem_of(model, series, levels, white(levels, series[0].rate_hz))
+    problem = problem_of(model, series, levels)
     problem = replace(problem, allowance=Allowance(at_most_s))
     done = Candidates(problem)
     unfinished = _searched(done, show)

@@ -24,7 +24,7 @@ from hil.analysis.missing_effects._series import Series
 from hil.analysis.missing_effects._spectrum import Powers, bands_of, edges_hz, transformed
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
-from hil.plant import linear_system_of, sensor_response
+from hil.plant import SENSOR_TURNED, linear_system_of, sensor_response
 
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -41,7 +41,8 @@ _FAR = 3.0  # logarithm of a response's misfit, beyond which all are alike
 class Responses:
     """Measured responses of the outputs to the torque, bins x 3, and what no linear system explains.
 
-    `input_power` (bins,) and `rest` (bins x 3) are means of so many `windows`, of a block mean.
+    `input_power` (bins,) and `rest` (bins x 3) are means of so many `windows`, of a block mean;
+    `turned_over_s` (3,) is that of a series.
     """
 
     problem: Problem
@@ -50,10 +51,12 @@ class Responses:
     found: ComplexArray
     rest: Array
     windows: int
+    turned_over_s: Array
 
     def response(self, hypothesis: Hypothesis) -> ComplexArray:
         """Of a hypothesis' linear part, sensors included: bins x 3."""
         slots, sensors = hypothesis.packed()
+        sensors[:, SENSOR_TURNED] = self.turned_over_s
         plant = linear_system_of(slots).response(self.frequency_hz)
         return np.asarray((plant * sensor_response(sensors, self.frequency_hz)).T)
 
@@ -69,7 +72,8 @@ class Responses:
         count = np.stack([np.bincount(band, one, len(edges) - 1) for one in there.T.astype(float)])
         sums = np.stack([np.bincount(band, one, len(edges) - 1) for one in np.nan_to_num(error).T])
         power = np.repeat((sums / np.maximum(count, 1.0))[None], self.windows, axis=0)
-        return Powers(edges, power, np.repeat(0.5 * count[None], self.windows, axis=0), self.problem.signal)
+        bins, problem = np.repeat(0.5 * count[None], self.windows, axis=0), self.problem
+        return Powers(edges, power, bins, problem.signal, colour=problem.colour)
 
     def log_likelihood(self, hypothesis: Hypothesis) -> float:
         """Of the responses."""
@@ -170,7 +174,8 @@ def responses_of(problem: Problem) -> Responses | None:
     power = power * np.abs(held) ** 2
     found = cross * np.conj(held)[:, None] / np.maximum(power, 1e-300)[:, None]
     rest = np.maximum(outputs - np.abs(found) ** 2 * power[:, None], 0.0)
-    return Responses(problem, frequency[used], power[used], found[used], rest[used], windows)
+    over_s = longest.turned_over_s
+    return Responses(problem, frequency[used], power[used], found[used], rest[used], windows, over_s)
 
 
 def _bins(one: Series) -> int:

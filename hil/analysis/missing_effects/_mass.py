@@ -67,8 +67,11 @@ class Mass:
     @cached_property
     def change_noise_rad_s(self) -> float:
         """Standard deviation by proven noise of a change of speed over a window: of two means' difference."""
-        reach = _reach(self.series[0])
-        return float(self.noise_rad_s * np.sqrt(2.0 / reach))
+        one = self.series[0]
+        reach = _reach(one)
+        # noise of what an angle turns by from block to block is differences itself: in a mean it cancels
+        stays = 1.5 / reach if one.of_angle[0 if one.has[0] else 1] else 1.0
+        return float(self.noise_rad_s * np.sqrt(2.0 / reach * stays))
 
     @cached_property
     def _moving(self) -> list[npt.NDArray[np.bool_]]:

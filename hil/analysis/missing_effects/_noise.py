@@ -8,13 +8,18 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.missing_effects._series import Series
+from hil.analysis.missing_effects._spectrum import bands_of, edges_hz
 from hil.analysis.power_density import power_density
-from hil.core.channels import OUTPUTS
+from hil.core.channels import ANGLES, OUTPUTS
+from hil.plant import half_window
 
 Array = npt.NDArray[np.float64]
 
 _TOP = 0.6  # of the band up to half the rate: above it stands no mode of a driveline, only noise
 _WINDOW = 1024  # samples
+_ALIKE = 1e-9  # of all that readings span: nearer ones are one level
+_BINS = 4096  # of a spectrum of noise
+_LEAST_COLOUR = 1e-4  # no encoder's noise is that much less in one octave than in all
 _DIGITS = 1e-5  # of a channel's rms: what no instrument of a bench resolves
 
 
@@ -29,12 +34,59 @@ def proven_noise(series: Sequence[Series], stated: Mapping[str, float]) -> Array
         have = [one for one in series if one.has[column]]
         if not have:
             continue
+        if any(one.of_angle[column] for one in have):
+            levels[column] = _of_angles(have, column, stated.get(ANGLES[name], 0.0))
+            continue
         white = np.median([_white_of_blocks(one, column) for one in have])
         step = rounding_step(np.concatenate([one.samples[:, column] for one in have]))
         maker = stated.get(name, 0.0) / np.sqrt(have[0].block)
         digits = _DIGITS * np.sqrt(np.mean([np.mean(one.samples[:, column] ** 2) for one in have]))
         levels[column] = max(float(white), step / np.sqrt(12.0), maker, float(digits), 1e-12)
     return levels
+
+
+def _of_angles(series: Sequence[Series], column: int, stated_rad: float) -> float:
+    """Of block means of what an angle turns by, by the white noise of its readings and their rounding."""
+    have = [one for one in series if one.of_angle[column]]
+    angles = [one.angle[:, column] for one in have]
+    middle = 0.25 * np.pi * (1.0 + _TOP)  # of white noise differences have 4 sin² of its density
+    white = np.median([_white(np.diff(one)) for one in angles]) / (2.0 * np.sin(middle))
+    step = rounding_step(np.concatenate(angles), often=False)
+    digits = 1e-15 * max(float(np.max(np.abs(one))) for one in angles)
+    of_a_reading = max(float(white), step / np.sqrt(12.0), stated_rad, digits)
+    return float(of_a_reading * np.sqrt(_together(have[0])[0]))
+
+
+def colour_of(series: Sequence[Series]) -> Array | None:
+    """Power of each channel's noise by octave (3 x bands), over its mean; None where all are white.
+
+    That of what an angle turns by rises with the frequency: an angle does not walk off.
+    """
+    one = next((one for one in series if one.of_angle.any()), None)
+    if one is None:
+        return None
+    edges = edges_hz(series[0].rate_hz)
+    colour = np.ones((len(OUTPUTS), len(edges) - 1))
+    together = _together(one)
+    frequency = np.linspace(0.0, 0.5 * one.rate_hz, _BINS)
+    waves = np.cos(2.0 * np.pi * frequency[:, None] * np.arange(len(together)) / one.rate_hz)
+    power = (2.0 * waves @ together - together[0]) / together[0]
+    band = bands_of(edges, frequency)
+    count = np.bincount(band, minlength=len(edges) - 1)
+    octaves = np.bincount(band, power, len(edges) - 1) / np.maximum(count, 1)
+    colour[one.of_angle] = np.maximum(octaves, _LEAST_COLOUR)
+    return colour
+
+
+def _together(one: Series) -> Array:
+    """Covariances of block means so many blocks apart of what an angle with white noise of one turns by."""
+    half, block = half_window(one.dt), one.block
+    weights = np.zeros(block + 2 * half)
+    weights[2 * half :] += 1.0
+    weights[:block] -= 1.0
+    weights /= block * 2 * half * one.dt
+    apart = range(0, len(weights), block)
+    return np.array([float(weights[at:] @ weights[: len(weights) - at]) for at in apart])
 
 
 def _white_of_blocks(one: Series, column: int) -> float:
@@ -50,16 +102,20 @@ def _white(values: Array) -> float:
     return float(np.sqrt(0.5 * np.median(density[frequency > 0.5 * _TOP, 0])))
 
 
-def rounding_step(values: Array) -> float:
+def rounding_step(values: Array, *, often: bool = True) -> float:
     """Distance between the readings that a channel takes, in its unit; 0.0 where they are a continuum.
 
     Readings lie on a grid where there are far fewer levels than samples and nearly all differences of
     neighbouring levels are whole multiples of the smallest usual one.
+
+    Args:
+        often: whether each level must be read often; not of an angle that goes on.
     """
     levels = np.unique(values)
-    if len(levels) < 3 or 4 * len(levels) > len(values):
+    if len(levels) < 3 or (often and 4 * len(levels) > len(values)):
         return 0.0
     gaps = np.diff(levels)
+    gaps = gaps[gaps > _ALIKE * (levels[-1] - levels[0])]  # digits of one level
     step = float(np.median(gaps[gaps <= 1.5 * np.quantile(gaps, 0.1)]))
     off = np.abs(gaps / step - np.rint(gaps / step))
     return step if np.mean(off < 0.05) > 0.9 else 0.0

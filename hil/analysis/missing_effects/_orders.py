@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._fit import Point
 from hil.analysis.missing_effects._problem import Problem
-from hil.analysis.missing_effects._spectrum import SEGMENT_S, bands_of, powers_of, white
+from hil.analysis.missing_effects._spectrum import SEGMENT_S, bands_of, powers_of
 from hil.core.runtime.compiled import compiled
 from hil.plant import gear_ratio_of, linear_system_of, turned
 
@@ -37,7 +37,7 @@ def orders_of(problem: Problem, point: Point, side: Side) -> list[float]:
 
     A ripple that is most of the misfit makes its own octaves weigh little.
     """
-    by_noise = problem.weighed_by(white(problem.noise, problem.rate_hz))
+    by_noise = problem.weighed_by_noise()
     system = linear_system_of(point.hypothesis.packed()[0])
     fine = fineness(turns(problem, side))
     orders = np.arange(fine, _HIGHEST, fine)
@@ -107,7 +107,8 @@ def turned_with(problem: Problem, point: Point) -> Problem:
     An angle that is integrated from readings walks off with their noise, one that is simulated with what the
     model gets wrong: of each octave of a recording's difference a share (P - N)/P is taken (N. Wiener, 1949).
     """
-    noise = problem.slow_noise * np.nan_to_num(problem.noise)[:, None] ** 2
+    colour = 1.0 if problem.colour is None else problem.colour
+    noise = problem.slow_noise * np.nan_to_num(problem.noise)[:, None] ** 2 * colour
     ratio = gear_ratio_of(point.hypothesis.model()) or 1.0
     angles = []
     for index, one in enumerate(problem.series):

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from hil.analysis.missing_effects._series import Series
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse, Model
-from hil.plant import replayed
+from hil.plant import angle_of, as_read, replayed
 
 Array = npt.NDArray[np.float64]
 Verdict = Literal["named", "none", "unknown"]
@@ -56,12 +56,24 @@ class Replay:
     _shown: list[tuple[Model, Array]] = field(default_factory=list, init=False, repr=False, compare=False)
 
     def outputs(self, model: Model) -> Array:
-        """What a model shows at every sample: n x 3, in the order of `OUTPUTS`."""
+        """What a model shows at every sample, n x 3: `OUTPUTS`, those of an angle by what it turns by."""
+        return as_read(self._simulated(model), self.series.of_angle, self.series.dt)
+
+    def angle(self, model: Model) -> Array:
+        """Angles of a model in rad where they were recorded, n x 3, from the first reading on; else NaN."""
+        one, shown = self.series, self._simulated(model)
+        found = np.full(shown.shape, np.nan)
+        for column in np.flatnonzero(one.of_angle).tolist():
+            found[:, column] = angle_of(shown[:, column], one.dt, float(one.angle[0, column]))
+        return found
+
+    def _simulated(self, model: Model) -> Array:
         for known, outputs in self._shown:
             if known == model:
                 return outputs
         one = self.series
-        shown = replayed(model, one.torque, one.dt, one.samples, one.load, one.first_wheel_angle_rad)
+        begins = one.first_wheel_angle_rad
+        shown = replayed(model, one.torque, one.dt, one.samples, one.load, begins, one.of_angle)
         none = np.zeros(len(one.torque))  # a model of functions may lack one
         self._shown.append((model, np.column_stack([shown.get(name, none) for name in OUTPUTS])))
         return self._shown[-1][1]

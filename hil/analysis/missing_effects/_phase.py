@@ -17,7 +17,6 @@ import numpy.typing as npt
 from hil.analysis.missing_effects._fit import Point, without
 from hil.analysis.missing_effects._orders import Side, turned_with
 from hil.analysis.missing_effects._problem import Problem
-from hil.analysis.missing_effects._spectrum import white
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 from hil.plant import begins_of, gear_ratio_of, simulate_many
@@ -28,6 +27,7 @@ _KNOTS_S = 1.0  # apart
 _ASIDE_RAD = 0.1  # of phase, by which a knot is moved to see what that does
 _ROUNDS = 6
 _STEPS = (1.0, 0.5, 0.25)
+_NO_WALK = 1e-3  # of a speed's noise: an angle is read anew at every sample
 _SETTLED = 1.0  # half the squares by which a round must fall
 _COLUMNS: dict[Side, int] = {"wheel": 0, "rotor": 1}
 
@@ -39,7 +39,7 @@ def tracked(problem: Problem, point: Point) -> Problem:
     if not uses:
         return turned
     ratio = gear_ratio_of(problem.model) or 1.0
-    by_noise = turned.weighed_by(white(problem.noise, problem.rate_hz))  # a walk is noise, not discrepancy
+    by_noise = turned.weighed_by_noise()  # a walk is noise, not discrepancy
     walks = problem.each(lambda index: _Walk(by_noise, point, index))
     angles = problem.each(
         lambda index: walks[index].followed(uses, (turned.angles[index], problem.series[index].angles(ratio)))
@@ -53,7 +53,8 @@ class _Walk:
     def __init__(self, problem: Problem, point: Point, index: int) -> None:
         self.problem, self.point, self.index = problem, point, index
         self.one = problem.series[index]
-        self.packed = tuple(part[None] for part in point.hypothesis.packed())
+        slots, sensor = point.hypothesis.packed()
+        self.packed = slots[None], problem.sensors(index, [sensor])
         self.basis = problem.start_basis(index, point.hypothesis, point.starts[index])[2]
 
     def followed(self, uses: Sequence[EffectUse], begins: Sequence[Array]) -> Array:
@@ -104,10 +105,12 @@ class _Walk:
         return without(self.basis, self.problem.weighed(self.index, one.measured - shown)[0])
 
     def _variance_a_second(self, side: Side) -> float:
-        """Of the walk of an integrated speed with white noise, rad²/s."""
+        """Of the walk of an integrated speed with white noise, rad²/s; next to none of an angle."""
         ratio = gear_ratio_of(self.point.hypothesis.model()) or 1.0
         onto = np.array([1.0, ratio]) if side == "rotor" else np.array([1.0 / ratio, 1.0])
         noise = np.where(self.one.has[:2], self.problem.noise[:2] * onto, np.inf)
+        if self.one.of_angle.any():
+            noise[:2][self.one.of_angle[:2]] *= _NO_WALK
         return float(np.min(noise) ** 2 * self.one.block * self.one.dt)
 
 

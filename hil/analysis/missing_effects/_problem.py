@@ -11,12 +11,13 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._allowance import UNBOUNDED, Allowance
 from hil.analysis.missing_effects._hypothesis import Coordinate, Hypothesis
+from hil.analysis.missing_effects._noise import colour_of
 from hil.analysis.missing_effects._series import Series
 from hil.analysis.missing_effects._shown import Shown
-from hil.analysis.missing_effects._spectrum import Powers, Spectrum, powers_of
+from hil.analysis.missing_effects._spectrum import Powers, Spectrum, of_noise, powers_of
 from hil.core.model import Model, TransferFunction
 from hil.core.runtime.thread_map import map_on_threads
-from hil.plant import begins_of, gear_ratio_of, simulate_many, turns
+from hil.plant import SENSOR_TURNED, begins_of, gear_ratio_of, simulate_many, turns
 
 Array = npt.NDArray[np.float64]
 _Result = TypeVar("_Result")
@@ -33,7 +34,7 @@ class Problem:
 
     `noise` (3,) is a standard deviation, `signal` (3,) a mean square of each channel, `spectrum` is what
     errors are weighed by; `scales` are sizes of numbers that may be zero, `held` numbers without effect.
-    Every simulation asks `allowance` first.
+    `colour` (3 x bands) is that of noise, None where it is white. Every simulation asks `allowance` first.
     """
 
     model: Model
@@ -44,12 +45,17 @@ class Problem:
     scales: dict[str, float] = field(default_factory=dict)
     held: frozenset[str] = frozenset()
     angles: tuple[Array, ...] = ()
+    colour: Array | None = None
     shown: Shown = field(default_factory=Shown, repr=False, compare=False)
     allowance: Allowance = UNBOUNDED
 
     def weighed_by(self, spectrum: Spectrum) -> Problem:
         """The same, errors weighed by another spectrum."""
         return replace(self, spectrum=spectrum)
+
+    def weighed_by_noise(self) -> Problem:
+        """The same, errors weighed by noise alone."""
+        return self.weighed_by(of_noise(self.noise, self.rate_hz, self.colour))
 
     def coordinates(self, hypothesis: Hypothesis) -> list[Coordinate]:
         """Free numbers of a hypothesis: a gear ratio is one where the wheel side was recorded."""
@@ -86,7 +92,7 @@ class Problem:
         """
         lowest = [one.lowest_hz for one in self.series]
         periods = [one.periods if once else 1.0 for one in self.series]
-        return powers_of(errors, self.rate_hz, self.signal, lowest, periods)
+        return powers_of(errors, self.rate_hz, self.signal, lowest, periods, self.colour)
 
     def mean_square(self, errors: Sequence[Array]) -> Array:
         """Of each channel over all that counts of the recordings, (3,); NaN where it was not recorded."""
@@ -117,7 +123,7 @@ class Problem:
             keep: whether the same may be asked for again. What comes back is not to be written to.
         """
         one, angles = self.series[index], self.angles[index]
-        slots, sensors = (np.stack([p[i] for p in packed]) for i in range(2))
+        slots, sensors = np.stack([p[0] for p in packed]), self.sensors(index, [p[1] for p in packed])
         begins = starts if self.functions else begins_of(slots, starts)
         keys = [
             (id(one), id(angles) if follows else 0, p.tobytes(), sensor.tobytes(), begin.tobytes())
@@ -133,14 +139,21 @@ class Problem:
 
         return self.shown.outputs(keys, simulate, (one, angles), keep=keep)
 
+    def sensors(self, index: int, packed: Sequence[Array]) -> Array:
+        """Of sets (each 3 x numbers), as a recording has their channels: of an angle what that turns by."""
+        sensors = np.stack(packed)
+        sensors[:, :, SENSOR_TURNED] = self.series[index].turned_over_s
+        return sensors
+
     def samples(self, index: int, hypothesis: Hypothesis, start: Array) -> Array:
         """Channels of a recording by a hypothesis at every sample, n x 3."""
         one = self.series[index]
-        slots, sensors = (part[None] for part in hypothesis.packed())
+        slots, sensor = hypothesis.packed()
         angles = self.angles[index]
         shown = simulate_many(
-            slots, one.torque, one.dt, start[None], sensors, 1, angles, one.load, self.functions
-        )
+            slots[None], one.torque, one.dt, start[None], self.sensors(index, [sensor]), 1, angles, one.load,
+            self.functions,
+        )  # fmt: skip
         return np.asarray(shown[0])
 
     def errors(self, hypothesis: Hypothesis, starts: Sequence[Array]) -> list[Array]:
@@ -267,17 +280,21 @@ def _step(one: Coordinate, at: float, wider: float) -> float:
     return step if one.at(at + step) <= one.upper else -step
 
 
-def problem_of(model: Model, series: Sequence[Series], noise: Array, spectrum: Spectrum) -> Problem:
-    """The problem of a base model and recordings."""
+def problem_of(
+    model: Model, series: Sequence[Series], noise: Array, spectrum: Spectrum | None = None
+) -> Problem:
+    """The problem of a base model and recordings, errors weighed by noise where no spectrum is given."""
     ratio = gear_ratio_of(model) or 1.0
+    colour = colour_of(series)
     return Problem(
         model,
         tuple(series),
         noise,
-        spectrum,
+        spectrum or of_noise(noise, series[0].rate_hz, colour),
         _signal(series),
         _scales(model, series),
         angles=tuple(one.angles(ratio) for one in series),
+        colour=colour,
         held=frozenset() if any(one.has[1:].any() for one in series) else frozenset({"gear_ratio"}),
     )
 

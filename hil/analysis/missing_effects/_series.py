@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -14,11 +14,11 @@ from hil.analysis.frequency_response import period_samples
 from hil.analysis.missing_effects._spectrum import edges_hz, powers_of
 from hil.analysis.spikes import without_spikes
 from hil.analysis.stretches import excerpts, unbroken
-from hil.core.channels import INPUT, OUTPUTS, WHEEL_ANGLE
+from hil.core.channels import ANGLES, ANY_OUTPUT, INPUT, OUTPUTS, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
-from hil.plant import load_of, turned
+from hil.plant import angle_at, by_angle, half_window, load_of, speed_of, turned
 
 Array = npt.NDArray[np.float64]
 
@@ -37,6 +37,8 @@ class Series:
     `torque` is held over samples of `dt` seconds; `samples` (n x 3, in the order of `OUTPUTS`) has NaN where
     a channel was not recorded; `measured` (blocks x 3) are means of `block` samples; `load` brakes the wheels
     in N m, None where the model takes none. `even`: samples are readings, else interpolated between them.
+    A speed may have been recorded as an `angle` (n x 3, rad; NaN where not): then it is what that turns by
+    around each sample (`hil.plant.speed_of`).
     """
 
     name: str
@@ -49,11 +51,22 @@ class Series:
     first_wheel_angle_rad: float
     notes: tuple[str, ...]
     even: bool = True
+    angle: Array = field(default_factory=lambda: np.full((1, len(OUTPUTS)), np.nan))
 
     @property
     def has(self) -> npt.NDArray[np.bool_]:
         """Which channels were recorded, shape (3,)."""
         return np.asarray(np.isfinite(self.samples[0]), dtype=bool)
+
+    @property
+    def of_angle(self) -> npt.NDArray[np.bool_]:
+        """Which channels were recorded as an angle, (3,)."""
+        return np.asarray(np.isfinite(self.angle[0]), dtype=bool)
+
+    @property
+    def turned_over_s(self) -> Array:
+        """Within what time an angle is read in place of a speed, (3,); 0 of a speed."""
+        return np.where(self.of_angle, 2 * half_window(self.dt) * self.dt, 0.0)
 
     @property
     def rate_hz(self) -> float:
@@ -107,7 +120,7 @@ def series_of(model: Model, recordings: Sequence[Recording]) -> list[Series]:
             found += [_series(model, piece) for piece in excerpts(part)]
     if not any(one.has.any() for one in found):
         raise BadInputError(
-            f"the recordings have none of {', '.join(OUTPUTS)}", fix="record at least a speed"
+            f"the recordings have none of {', '.join(ANY_OUTPUT)}", fix="record at least a speed"
         )
     return found
 
@@ -126,9 +139,13 @@ def _series(model: Model, recording: Recording) -> Series:
     def on_grid(values: Array) -> Array:
         return np.asarray(values[nearest] if even else np.interp(grid, time, values), dtype=float)
 
-    samples = np.full((len(grid), len(OUTPUTS)), np.nan)
+    samples, angle = np.full((2, len(grid), len(OUTPUTS)), np.nan)
+    of_angle = by_angle(recording)
     for column, name in enumerate(OUTPUTS):
-        if name in recording:
+        if of_angle[column]:
+            angle[:, column] = angle_at(recording, ANGLES[name], grid)
+            samples[:, column] = speed_of(angle[:, column], dt)
+        elif name in recording:
             samples[:, column] = without_spikes(on_grid(recording[name]), name, dt)[0]
     block = max(1, round(1.0 / (FIT_RATE_HZ * dt)))
     if not even:  # a block without a reading of its own would show what was interpolated
@@ -146,4 +163,5 @@ def _series(model: Model, recording: Recording) -> Series:
         float(recording[WHEEL_ANGLE][0]) if WHEEL_ANGLE in recording else 0.0,
         () if even else (f"{recording.source.stem}: uneven time stamps, put on a grid of {dt * 1e3:.4g} ms",),
         even,
+        angle,
     )

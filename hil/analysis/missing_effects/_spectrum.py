@@ -130,10 +130,11 @@ def edges_hz(rate_hz: float) -> Array:
     return np.concatenate([[0.0], _LOWEST_HZ * 2.0 ** np.arange(octaves), [0.5 * rate_hz * 1.001]])
 
 
-def white(noise: Array, rate_hz: float) -> Spectrum:
-    """Noise alone, of `noise` standard deviations (3,)."""
+def of_noise(noise: Array, rate_hz: float, colour: Array | None = None) -> Spectrum:
+    """Noise alone, of `noise` standard deviations (3,); white, or of a colour (3 x bands) around 1."""
     edges = edges_hz(rate_hz)
-    return Spectrum(edges, np.repeat((noise**2)[:, None], len(edges) - 1, axis=1))
+    colour = np.ones((len(noise), len(edges) - 1)) if colour is None else colour
+    return Spectrum(edges, (noise**2)[:, None] * colour)
 
 
 @dataclass(frozen=True)
@@ -142,7 +143,7 @@ class Powers:
 
     `power` and `bins` are windows x 3 x bands; a channel that is missing has no bins. `signal` is
     the mean square of each channel (3,), `repeated` (windows,) how many windows show the same discrepancy
-    (of a torque that repeats itself), None where each shows its own.
+    (of a torque that repeats itself), None where each shows its own. `colour` (3 x bands) is that of noise.
     """
 
     edges_hz: Array
@@ -150,6 +151,7 @@ class Powers:
     bins: Array
     signal: Array
     repeated: Array | None = None
+    colour: Array | None = None
 
     def spectrum(self, noise: Array) -> Spectrum:
         """The scale of noise and discrepancy that suits these errors best."""
@@ -206,6 +208,8 @@ class Powers:
         """Mean power, at least that of noise; noise; what no model is right to; bins of one discrepancy."""
         total = np.sum(self.bins, axis=0)
         n = np.where(np.isfinite(noise), noise, 1.0)[:, None] ** 2 * np.ones_like(total)
+        if self.colour is not None:
+            n *= self.colour
         p = np.maximum(np.sum(self.bins * self.power, axis=0) / np.maximum(total, 1e-300), n)
         d = np.where(self.signal > 0.0, RIGHT_TO**2 * self.signal, 1.0)[:, None] * np.ones_like(total)
         inside = np.maximum(np.max(self.bins, axis=(0, 1)) / _LAPPED, 1.0) * np.ones_like(total)
@@ -258,12 +262,14 @@ def powers_of(
     signal: Array,
     lowest_hz: Sequence[float] | None = None,
     periods: Sequence[float] | None = None,
+    colour: Array | None = None,
 ) -> Powers:
     """Powers of errors of each recording (blocks x 3, NaN where not recorded), by half-lapped windows.
 
     Args:
         lowest_hz: of each recording: bands below do not count; zero when left out.
         periods: of each recording: how often its torque repeats itself; once when left out.
+        colour: of noise, 3 x bands; white when left out.
     """
     edges = edges_hz(rate_hz)
     power, bins, repeated = [], [], []
@@ -279,7 +285,7 @@ def powers_of(
             there = np.isfinite(sums)
             power.append(np.where(there, sums / np.maximum(inside, 1.0), 0.0))
             bins.append(np.where(there & (edges[1:] > lowest), _LAPPED * inside, 0.0))
-    return Powers(edges, np.array(power), np.array(bins), signal, np.array(repeated))
+    return Powers(edges, np.array(power), np.array(bins), signal, np.array(repeated), colour)
 
 
 def _window_of(blocks: int, rate_hz: float) -> int:

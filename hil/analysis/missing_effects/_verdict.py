@@ -301,7 +301,8 @@ def _roundings(done: Candidates, weight: float) -> list[Named]:
     }
     found = []
     for column, name in enumerate(OUTPUTS):
-        have = [one.samples[:, column] for one in done.problem.series if one.has[column]]
+        series = done.problem.series
+        have = [one.samples[:, column] for one in series if one.has[column] and not one.of_angle[column]]
         step = rounding_step(np.concatenate(have)) if have and name not in known else 0.0
         if step > 0.0 and step / np.sqrt(12.0) >= done.problem.noise[column]:
             use = EffectUse("sensor_quantization", {"channel": name, "step": step})

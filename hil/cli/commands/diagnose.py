@@ -61,14 +61,19 @@ def text_of(found: Diagnosis, out: Path) -> str:
         for parameter, (old, new, error) in found.start.parameters.items():
             lines.append(f"    {parameter} = {new:.5g} ± {error:.2g} instead of {old:g}")
     lines += ["", f"{'gap, of the signal':<28}{'before':>14}{'after':>14}{'noise':>14}{'after/noise':>13}"]
-    for suffix, before, after in (
-        ("", found.gap_before, found.gap_after),
-        (" (held)", found.holdout_before, found.holdout_after),
+    for suffix, before, after, angles in (
+        ("", found.gap_before, found.gap_after, found.angles),
+        (" (held)", found.holdout_before, found.holdout_after, found.holdout_angles),
     ):
         for name, gap in after.items():
             figures = (before[name].gap, gap.gap, gap.noise_floor)
             shown = "".join(f"{share(figure, 2, digits=3):>14}" for figure in figures)
             lines.append(f"{name + suffix:<28}{shown}{factor(gap.noises):>13}")
+        for name, (had, has) in angles.items():
+            figures = (had.gap, has.gap, has.noise_floor)
+            lines.append(
+                f"{name + suffix:<28}" + "".join(f"{share(one, 2, digits=3):>14}" for one in figures)
+            )
     if found.open_channels and found.verdict == "named":
         lines.append(f"remaining error above noise: {', '.join(found.open_channels)}")
     lines += [f"made worse: {place}" for place in found.worse[:MOST_WORSE]]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hil.core.channels import CHANNELS, INPUT, OUTPUTS, TIME
+from hil.core.channels import ANY_OUTPUT, CHANNELS, INPUT, TIME
 from hil.core.errors import BadInputError
 from hil.core.recording._stored import Places, StoredColumns
 from hil.core.recording._table import Array, Recording
@@ -39,14 +39,14 @@ def checked(
     for name in (TIME,) if any_channels else (TIME, INPUT):
         if name not in recording:
             recording[name]
-    if not any_channels and not any(name in recording for name in OUTPUTS):
+    if not any_channels and not any(name in recording for name in ANY_OUTPUT):
         raise BadInputError(
-            f"has none of the output channels {', '.join(OUTPUTS)}", where=where, fix="record at least one"
+            f"has none of the output channels {', '.join(ANY_OUTPUT)}", where=where, fix="record at least one"
         )
     if recording.samples < least_samples:
         raise BadInputError(f"has {recording.samples} samples, {least_samples} are needed", where=where)
     known = [name for name in CHANNELS if name in recording]
-    lacking = {name: _Lacking() for name in (INPUT, *OUTPUTS) if name in recording}
+    lacking = {name: _Lacking() for name in (INPUT, *ANY_OUTPUT) if name in recording}
     before_s = -np.inf
     for first, block in recording.blocks(known):
         time = block[TIME]

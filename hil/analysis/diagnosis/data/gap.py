@@ -67,12 +67,16 @@ def channel_gaps(traces: Sequence[Trace], floor: Array, simulated: Sequence[Arra
         ]
         if not pairs:
             continue
-        measured = np.concatenate([m for m, _ in pairs])
-        error = measured - np.concatenate([s for _, s in pairs])
-        spread = max(float(np.std(measured)), 1e-12)
-        rms = float(np.sqrt(np.mean(error**2)))
-        gaps[channel] = ChannelGap(rms / spread, float(floor[column]) / spread)
+        gaps[channel] = channel_gap([m for m, _ in pairs], [s for _, s in pairs], float(floor[column]))
     return gaps
+
+
+def channel_gap(measured: Sequence[Array], simulated: Sequence[Array], floor: float) -> ChannelGap:
+    """Gap and noise floor of a channel over recordings, (n,) each, together."""
+    whole = np.concatenate(measured)
+    error = whole - np.concatenate(simulated)
+    spread = max(float(np.std(whole)), 1e-12)
+    return ChannelGap(float(np.sqrt(np.mean(error**2))) / spread, floor / spread)
 
 
 def gap_map(traces: Sequence[Trace], noise: Array, simulated: Sequence[Array]) -> GapMap:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hil.analysis.diagnosis.data.thresholds import SLOW_HZ
-from hil.core.channels import OUTPUTS
+from hil.core.channels import ANGLES, OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
@@ -49,13 +49,14 @@ def with_outputs_of(model: Model, recording: Recording) -> Recording:
     """
     if not model.transfer_functions:
         return recording
-    measured = [name for name in OUTPUTS if name in recording]
-    lacking = [name for name in measured if name not in model.transfer_functions]
+    read_from = {name: name if name in recording else ANGLES.get(name, "") for name in OUTPUTS}
+    measured = {name: channel for name, channel in read_from.items() if channel in recording}
+    lacking = [channel for name, channel in measured.items() if name not in model.transfer_functions]
     if not lacking:
         return recording
     if len(lacking) == len(measured):
         raise BadInputError(
-            f"the model has no function for any of its outputs: {', '.join(measured)}",
+            f"the model has no function for any of its outputs: {', '.join(measured.values())}",
             where=str(recording.source),
             fix="add [transfer_functions] of one of them to the model file, or record what the model shows",
         )

@@ -20,11 +20,11 @@ from hil.analysis.diagnosis.data.thresholds import (
     UNEVEN_SHARE,
 )
 from hil.analysis.spikes import without_spikes
-from hil.core.channels import CHANNELS, INPUT, OUTPUTS, WHEEL_ANGLE
+from hil.core.channels import ANGLES, CHANNELS, INPUT, OUTPUTS, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import closest
 from hil.core.recording import Recording
-from hil.plant import SENSOR_GAIN, SENSOR_OFFSET, turned
+from hil.plant import SENSOR_GAIN, SENSOR_OFFSET, TURNED_OVER_S, angle_at, by_angle, speed_of, turned
 
 Array = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
@@ -115,7 +115,12 @@ def trace_of(recording: Recording, name: str = "", load: Array | None = None) ->
         notes += [note] if note else []
     torque = np.ascontiguousarray(on_grid[0])
     samples = np.full((len(grid), 3), np.nan)
-    samples[:, [c in given for c in OUTPUTS]] = np.column_stack([*on_grid[1:]])
+    for channel, values in zip(given, on_grid[1:], strict=True):
+        samples[:, OUTPUTS.index(channel)] = values
+    for column in np.flatnonzero(by_angle(recording)).tolist():
+        angle = ANGLES[OUTPUTS[column]]
+        samples[:, column] = speed_of(angle_at(recording, angle, grid), dt)
+        notes.append(f"{OUTPUTS[column]} is what {angle} turns by within {TURNED_OVER_S * 1e3:g} ms")
     block = max(1, round(1.0 / (FIT_RATE_HZ * dt)))
     first = _before_torque(torque)
     return Trace(
@@ -137,10 +142,11 @@ def trace_of(recording: Recording, name: str = "", load: Array | None = None) ->
 def _not_used(recording: Recording) -> list[str]:
     """What to say of channels whose names are nearly those that a diagnosis looks for."""
     strange = [name for name in recording.channels if name not in CHANNELS]
+    there = {*recording.channels, *(name for name, angle in ANGLES.items() if angle in recording)}
     return [
         f"has no {channel}, and '{near}' is not used: if it is that, rename it"
         for channel in OUTPUTS
-        if channel not in recording and (near := closest(channel, strange))
+        if channel not in there and (near := closest(channel, strange))
     ]
 
 

@@ -9,7 +9,15 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.asked import Asked
-from hil.analysis.diagnosis.data.gap import CONDITIONS, ChannelGap, GapMap, channel_gaps, gap_map, made_worse
+from hil.analysis.diagnosis.data.gap import (
+    CONDITIONS,
+    ChannelGap,
+    GapMap,
+    channel_gap,
+    channel_gaps,
+    gap_map,
+    made_worse,
+)
 from hil.analysis.diagnosis.data.trace import Trace
 from hil.analysis.diagnosis.findings.consequences import consequences
 from hil.analysis.diagnosis.findings.held_out import HeldOut, furthest
@@ -26,7 +34,7 @@ from hil.analysis.diagnosis.findings.separating import plan_file, plan_within_re
 from hil.analysis.diagnosis.findings.thresholds import CHANNEL_NOISES
 from hil.analysis.diagnosis.findings.words import Where, band_of_gap, where_changed
 from hil.analysis.missing_effects import OUT_OF_TIME, Named, Outcome, Replay
-from hil.core.channels import OUTPUTS
+from hil.core.channels import ANGLES, OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.errors.wording import multiple, share
 from hil.core.model import EffectUse, Model
@@ -98,6 +106,8 @@ def diagnosis_of(
         open_channels=_open(fitted.after),
         held_out_open=unseen.open(verdict),
         worse=tuple(made_worse(fitted.map_before, fitted.map_after)),
+        angles=_angles(found.fitted, found, base),
+        holdout_angles=_angles(found.held_out, found, base),
     )
 
 
@@ -148,6 +158,24 @@ class _Shown:
 def _outputs(replays: Sequence[Replay], model: Model) -> list[Array]:
     """Of a model on each recording."""
     return map_on_threads(lambda one: one.outputs(model), replays)
+
+
+def _angles(
+    replays: Sequence[Replay], found: Outcome, base: Model
+) -> dict[str, tuple[ChannelGap, ChannelGap]]:
+    """Gaps of angles recorded in place of a speed, by the model as it came and by the one given back."""
+    gaps = {}
+    for column, channel in enumerate(OUTPUTS):
+        read = [one for one in replays if one.series.of_angle[column]]
+        if read:
+            measured = [one.series.angle[:, column] for one in read]
+            noise = found.noise[column] * read[0].series.turned_over_s[column] / np.sqrt(2.0)  # of a reading
+            both = (
+                channel_gap(measured, [one.angle(model)[:, column] for one in read], float(noise))
+                for model in (base, found.model)
+            )
+            gaps[ANGLES[channel]] = (next(both), next(both))
+    return gaps
 
 
 def _trace(one: Replay) -> Trace:

@@ -114,6 +114,9 @@ class Diagnosis:
     unfinished: str = ""
     #: Where the model given back is further off than the one that came, in words.
     worse: tuple[str, ...] = ()
+    #: Gaps of angles that were recorded in place of a speed, before and after; of fitted and held-out ones.
+    angles: dict[str, tuple[ChannelGap, ChannelGap]] = field(default_factory=dict)
+    holdout_angles: dict[str, tuple[ChannelGap, ChannelGap]] = field(default_factory=dict)
 
     @property
     def something_else(self) -> float:
@@ -153,8 +156,8 @@ class Diagnosis:
                 }
                 for a in self.alternatives
             ],
-            "gap": _gaps(self.gap_before, self.gap_after),
-            "holdout_gap": _gaps(self.holdout_before, self.holdout_after),
+            "gap": _gaps(self.gap_before, self.gap_after, self.angles),
+            "holdout_gap": _gaps(self.holdout_before, self.holdout_after, self.holdout_angles),
             "map": _map(self.map_before, self.map_after),
             "open_channels": list(self.open_channels),
             "held_out_open": list(self.held_out_open),
@@ -207,8 +210,13 @@ def derived_of(use: EffectUse) -> dict[str, float]:
     return dict(effect.derived(numbers)) if effect.derived is not None else {}
 
 
-def _gaps(before: dict[str, ChannelGap], after: dict[str, ChannelGap]) -> dict[str, dict[str, float]]:
+def _gaps(
+    before: dict[str, ChannelGap],
+    after: dict[str, ChannelGap],
+    angles: dict[str, tuple[ChannelGap, ChannelGap]],
+) -> dict[str, dict[str, float]]:
+    both = {name: (before[name], after[name]) for name in before} | angles
     return {
-        name: {"before": before[name].gap, "after": after[name].gap, "noise_floor": before[name].noise_floor}
-        for name in before
+        name: {"before": had.gap, "after": has.gap, "noise_floor": had.noise_floor}
+        for name, (had, has) in both.items()
     }

@@ -14,6 +14,7 @@ import numpy.typing as npt
 import pytest
 
 from hil.analysis.diagnosis import diagnose
+from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
 
@@ -65,12 +66,42 @@ def recording(seconds: float = 25.0) -> Recording:
 
 @pytest.mark.slow
 def test_friction_and_its_offset_are_found_from_a_coarse_encoder_alone() -> None:
-    """Weighed as white noise, rolling resistance beside a sensor's offset seemed to close the gap."""
+    """Weighed as white noise, rolling resistance beside a sensor's offset seemed to close the gap.
+
+    Differences of positions are half a sample late: that is a number, if it is named at all.
+    """
     found = diagnose(MODEL, [recording()])
     named = {effect.use.id: effect for effect in found.effects}
     assert found.verdict == "named"
-    assert set(named) == {"coulomb_friction", "sensor_quantization"}
+    assert set(named) - {"parameter_mismatch"} == {"coulomb_friction", "sensor_quantization"}
+    assert found.model.parameters["torque_delay"] == pytest.approx(5e-4, abs=2e-4)
     friction = named["coulomb_friction"]
     for name, truth in (("torque_nm", FRICTION), ("offset_nm", OFFSET)):
         assert friction.use.values[name] == pytest.approx(truth, rel=0.01)
         assert abs(float(friction.use.values[name]) - truth) < 3.0 * friction.standard_error[name]
+
+
+def by_counts(one: Recording) -> Recording:
+    """The same as the encoder gives it."""
+    channels = {name: one[name] for name in ("time_s", "motor_torque_ref_nm")}
+    angle = np.cumsum(one["motor_speed_rad_s"]) * 1e-3
+    return Recording(channels | {"motor_angle_rad": angle}, Path("counts.csv"))
+
+
+@pytest.mark.slow
+def test_counts_themselves_tell_friction_and_its_offset_better() -> None:
+    """Their steps are noise of an angle, which does not walk off, and no effect."""
+    found = diagnose(MODEL, [by_counts(recording())])
+    (friction,) = found.effects
+    assert (found.verdict, friction.use.id) == ("named", "coulomb_friction")
+    for name, truth in (("torque_nm", FRICTION), ("offset_nm", OFFSET)):
+        assert friction.use.values[name] == pytest.approx(truth, rel=0.005)
+    assert found.as_json()["gap"]["motor_angle_rad"]["after"] < 2e-3
+    assert found.open_channels == ()
+
+
+def test_a_speed_here_and_an_angle_there_are_refused() -> None:
+    both = [recording(3.0), by_counts(recording(4.0))]
+    with pytest.raises(BadInputError, match="has motor_angle_rad and no motor_speed_rad_s") as caught:
+        diagnose(MODEL, both[:1], both[1:])
+    assert "give the same of the two" in caught.value.fix

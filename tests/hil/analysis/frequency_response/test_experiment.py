@@ -73,3 +73,16 @@ def test_rounded_time_stamps_are_even() -> None:
     recording = paper_plant.recording(paper_plant.chirp(10.0))
     recording.channels["time_s"] = np.round(recording.time_s + 1e-6 * np.sin(np.arange(10_000)), 6)
     assert experiments_of(recording)[0].notes == ()
+
+
+def test_an_angle_is_read_by_its_slope() -> None:
+    recording = run_recording("chirp")
+    time = recording.time_s
+    speed = 3.0 + 20.0 * np.cos(2.0 * np.pi * 10.0 * time)
+    angle = 3.0 * time + np.sin(2.0 * np.pi * 10.0 * time) / np.pi
+    recording.channels["wheel_angle_rad"] = angle % (2.0 * np.pi)
+    del recording.channels["wheel_speed_rad_s"]
+    (found,) = experiments_of(recording)
+    row = found.outputs[found.output_names.index("wheel_speed_rad_s")]
+    assert row[20:-20] == pytest.approx(speed[20:-20], abs=1e-3)
+    assert "wheel_speed_rad_s is the slope of wheel_angle_rad" in found.notes

@@ -10,7 +10,6 @@ import numpy.typing as npt
 from hil.analysis.missing_effects._noise import proven_noise
 from hil.analysis.missing_effects._problem import Problem, problem_of
 from hil.analysis.missing_effects._series import series_of
-from hil.analysis.missing_effects._spectrum import white
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
 from hil.plant import simulate
@@ -96,4 +95,4 @@ def problem_about(model: Model, recording: Recording) -> Problem:
     """A base that is asked about a recording, whose noise is proven."""
     series = series_of(model, [recording])
     levels = proven_noise(series, {})
-    return problem_of(model, series, levels, white(levels, series[0].rate_hz))
+    return problem_of(model, series, levels)

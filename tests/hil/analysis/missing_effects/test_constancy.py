@@ -11,7 +11,6 @@ from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._noise import proven_noise
 from hil.analysis.missing_effects._problem import problem_of
 from hil.analysis.missing_effects._series import series_of
-from hil.analysis.missing_effects._spectrum import white
 from hil.core.channels import INPUT
 from hil.core.model import EffectUse
 from hil.core.recording import Recording
@@ -28,7 +27,7 @@ def _worth(first: float, last: float) -> float:
     model = base(0.5, 0.3)
     series = series_of(model, [asked])
     noise = proven_noise(series, {})
-    problem = problem_of(model, series, noise, white(noise, series[0].rate_hz))
+    problem = problem_of(model, series, noise)
     begin = Hypothesis(model, dict(model.parameters)).with_term(EffectUse("torque_gain", {"gain": 1.1}))
     point = fit(problem, point_at(problem, begin))
     own = problem.weighed_by(point.powers(problem).spectrum(noise))

@@ -75,3 +75,26 @@ def test_a_late_torque_and_outputs_that_are_late_alike_are_one_class() -> None:
     named = next(one for one in found.effects if one.id == "actuator_lag")
     assert any(name.count("sensor_lag") == 3 for name in named.alike)
     assert named.use.values["time_constant_s"] == pytest.approx(0.008, rel=0.05)
+
+
+def test_dry_friction_is_named_from_an_encoder_alone() -> None:
+    """Readings in steps of 2 mrad; no speed was recorded. The same number as from a speed without noise."""
+    fit, held = (_by_encoder(recording(0.54, 2.17, 1.39, noise_rad_s=0.0, seed=seed)) for seed in (0, 5))
+    found = explain_gap(base(0.54), [fit], [held])
+    assert [one.id for one in found.effects if one.id != "parameter_mismatch"] == ["coulomb_friction"]
+    friction = found.effects[0]
+    assert friction.confidence > 0.95
+    assert friction.use.values["torque_nm"] == pytest.approx(1.39, rel=0.005)
+    assert found.numbers["viscous_drag"][1] == pytest.approx(2.17, rel=0.005)
+    for one in found.held_out:
+        left = one.series.samples[:, 0] - one.outputs(found.model)[:, 0]
+        assert np.std(left) < 1.15 * found.noise[0]
+        assert np.max(np.abs(one.series.angle[:, 0] - one.angle(found.model)[:, 0])) < 0.1
+
+
+def _by_encoder(one: Recording) -> Recording:
+    """The same, the motor's angle on a grid in place of its speed."""
+    speed = one["motor_speed_rad_s"]
+    angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))]) * one.sample_time_s
+    channels = {name: one[name] for name in ("time_s", "motor_torque_ref_nm")}
+    return Recording(channels | {"motor_angle_rad": np.round(angle / 2e-3) * 2e-3}, one.source)

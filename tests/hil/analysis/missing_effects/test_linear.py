@@ -10,7 +10,6 @@ import pytest
 from hil.analysis.missing_effects._linear import structures
 from hil.analysis.missing_effects._problem import problem_of
 from hil.analysis.missing_effects._series import series_of
-from hil.analysis.missing_effects._spectrum import white
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
 from tests.hil.analysis.missing_effects.chain import MOTORS, NUMBERS, chirp_problem, multisine_problem
@@ -54,4 +53,4 @@ def test_a_rigid_model_has_no_responses_to_read() -> None:
     time = np.arange(2000) * 1e-3
     shown = {"time_s": time, "motor_torque_ref_nm": np.sin(time), "motor_speed_rad_s": time}
     series = series_of(model, [Recording(shown, Path("rigid.csv"))])
-    assert structures(problem_of(model, series, np.ones(3), white(np.ones(3), 250.0))) == []
+    assert structures(problem_of(model, series, np.ones(3))) == []

@@ -14,7 +14,6 @@ from hil.analysis.missing_effects._orders import bins_of, by_order, fineness, ov
 from hil.analysis.missing_effects._problem import problem_of
 from hil.analysis.missing_effects._screen import promises
 from hil.analysis.missing_effects._series import series_of
-from hil.analysis.missing_effects._spectrum import white
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
 from hil.plant import simulate
@@ -45,7 +44,7 @@ def test_an_order_whose_misfit_grows_towards_a_resonance_promises_most(order: fl
     measured = Recording({"time_s": time, "motor_torque_ref_nm": torque} | shown, Path("up.csv"))
     series = series_of(_CHAIN, [measured])
     noise = proven_noise(series, {})
-    problem = problem_of(_CHAIN, series, noise, white(noise, series[0].rate_hz))
+    problem = problem_of(_CHAIN, series, noise)
     point = with_better_starts(problem, point_at(problem, Hypothesis(_CHAIN, _CHAIN.parameters)))
     problem = problem.weighed_by(point.powers(problem).spectrum(noise))
     promised = promises(problem, linearised(problem, point))

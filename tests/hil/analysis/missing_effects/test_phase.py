@@ -13,7 +13,6 @@ from hil.analysis.missing_effects._noise import proven_noise
 from hil.analysis.missing_effects._phase import tracked
 from hil.analysis.missing_effects._problem import Problem, problem_of
 from hil.analysis.missing_effects._series import series_of
-from hil.analysis.missing_effects._spectrum import white
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
 from hil.plant import simulate
@@ -50,7 +49,7 @@ def _problem(seed: int) -> tuple[Problem, list[np.ndarray]]:
     )
     levels = proven_noise(series, {})
     angle = np.concatenate([[0.0], np.cumsum(channels["motor_speed_rad_s"])[:-1] * 1e-3])
-    return problem_of(_CHAIN, series, levels, white(levels, series[0].rate_hz)), [angle]
+    return problem_of(_CHAIN, series, levels), [angle]
 
 
 def _point(problem: Problem, amplitude_nm: float) -> Point:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hil.analysis.missing_effects._spectrum import Powers, powers_of, white
+from hil.analysis.missing_effects._spectrum import Powers, of_noise, powers_of
 
 RATE_HZ = 250.0
 
@@ -65,7 +65,7 @@ def test_what_can_be_gained_is_what_a_likelihood_at_noise_has_more() -> None:
 def test_squares_of_weighed_windows_add_to_those_of_the_samples() -> None:
     errors = np.random.default_rng(2).normal(0.0, 1.0, (1, 20_000, 2))
     channels = np.array([True, False, True])
-    weighed = white(np.full(3, 0.5), RATE_HZ).weighed(errors, channels, RATE_HZ, 0.0)
+    weighed = of_noise(np.full(3, 0.5), RATE_HZ).weighed(errors, channels, RATE_HZ, 0.0)
     assert np.sum(weighed**2) == pytest.approx(np.sum(errors**2) / 0.25, rel=0.05)  # ends count half
 
 
@@ -99,7 +99,7 @@ def test_the_beginning_counts_as_much_as_the_middle() -> None:
     errors = np.random.default_rng(3).normal(0.0, 1.0, (1, 20_000, 2))
     errors[:, 500:] = 0.0  # of the first window, half
     channels = np.array([True, False, True])
-    spectrum = white(np.full(3, 0.5), RATE_HZ)
+    spectrum = of_noise(np.full(3, 0.5), RATE_HZ)
     both = (
         spectrum.weighed(errors, channels, RATE_HZ, 0.0),
         spectrum.rising(errors, channels, RATE_HZ),

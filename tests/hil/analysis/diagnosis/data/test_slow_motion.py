@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from hil.analysis.diagnosis.data.slow_motion import slow_motion_of, with_outputs_of
-from hil.core.channels import OUTPUTS, TIME
+from hil.core.channels import MOTOR_ANGLE, OUTPUTS, TIME, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.model import Model, TransferFunction
 from hil.core.recording import Recording
@@ -54,3 +54,7 @@ def test_only_outputs_with_a_function_are_kept() -> None:
     assert with_outputs_of(motor, same) is same
     with pytest.raises(BadInputError, match="no function for any"):
         with_outputs_of(motor, recorded(OUTPUTS[1]))
+    with pytest.raises(BadInputError, match="no function for any"):
+        with_outputs_of(motor, recorded(WHEEL_ANGLE))
+    angle = recorded(MOTOR_ANGLE)
+    assert with_outputs_of(motor, angle) is angle

@@ -52,3 +52,12 @@ def test_a_channel_with_nearly_the_right_name_is_told() -> None:
     )
     recording.channels["motor_torque_nm"] = recording.channels.pop("motor_speed")
     assert trace_of(recording).notes == ()
+
+
+def test_an_angle_stands_for_a_speed_and_is_noted() -> None:
+    recording = recorded()
+    speed = recording.channels.pop("motor_speed_rad_s")
+    recording.channels["motor_angle_rad"] = np.cumsum(speed) * recording.sample_time_s
+    found = trace_of(recording)
+    assert found.notes == ("motor_speed_rad_s is what motor_angle_rad turns by within 4 ms",)
+    assert found.samples[100:-100, 0] == pytest.approx(speed[100:-100], abs=0.05 * np.ptp(speed))

@@ -1,0 +1,105 @@
+"""Angles: integrated from recorded speeds, and as an encoder gives them in place of a speed.
+
+An encoder's reading is a model's output like a speed: of both it is compared what they turn by within a few
+milliseconds around each sample. Read so, an angle says all that it says (differences of white noise have a
+known colour, by which they are weighed), and what a model gathered long before does not count again.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.channels import ANGLES, OUTPUTS
+from hil.core.recording import Recording
+from hil.core.runtime.compiled import compiled
+
+Array = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
+
+SPEEDS: Flags = np.zeros(len(OUTPUTS), dtype=bool)
+"""Of no output as an angle."""
+TURNED_OVER_S = 0.004
+"""Within which an angle is read, or two samples: what an axle's bends in a speed leave alone up to 50 Hz."""
+
+
+def by_angle(recording: Recording) -> Flags:
+    """Which of `OUTPUTS` a recording has as an angle alone, (3,)."""
+    return np.array([name not in recording and ANGLES.get(name) in recording for name in OUTPUTS], dtype=bool)
+
+
+def half_window(dt: float) -> int:
+    """Samples to either side within which an angle is read."""
+    return max(1, round(0.5 * TURNED_OVER_S / dt))
+
+
+def speed_of(angle: Array, dt: float) -> Array:
+    """Mean speed in rad/s around each sample of an angle in rad, (n,); at the ends over what is there."""
+    half, last = half_window(dt), len(angle) - 1
+    at = np.arange(len(angle))
+    before, after = np.maximum(at - half, 0), np.minimum(at + half, last)
+    return np.asarray((angle[after] - angle[before]) / (dt * (after - before)))
+
+
+def angle_at(recording: Recording, angle: str, grid: Array) -> Array:
+    """A recorded angle in rad at the times of a grid, straight between its readings.
+
+    One that begins again with every turn goes on instead.
+    """
+    values = recording[angle]
+    if np.ptp(values) <= 2.0 * np.pi and np.any(np.abs(np.diff(values)) > np.pi):
+        values = np.unwrap(values)
+    return np.asarray(np.interp(grid, recording.time_s, values), dtype=float)
+
+
+def as_read(speeds: Array, of_angle: Flags, dt: float) -> Array:
+    """Columns of speeds (n x 3), those read as an angle in place of a speed as `speed_of` reads them."""
+    if not of_angle.any() or len(speeds) < 2:
+        return speeds
+    columns = [
+        mean_around(np.ascontiguousarray(one), half_window(dt)) if turns else one
+        for one, turns in zip(speeds.T, of_angle.tolist(), strict=True)
+    ]
+    return np.column_stack(columns)
+
+
+@compiled
+def mean_around(speed, half):  # type: ignore[no-untyped-def]
+    """What `speed_of` reads of the angle of a speed, (n,): cubic between samples, as is its integral."""
+    last = speed.shape[0] - 1
+    way = np.zeros(speed.shape[0])
+    for k in range(last):
+        outer = speed[max(k - 1, 0)] + speed[min(k + 2, last)]
+        way[k + 1] = way[k] + (13.0 * (speed[k] + speed[k + 1]) - outer) / 24.0
+    out = np.empty(speed.shape[0])
+    for k in range(speed.shape[0]):
+        before, after = max(k - half, 0), min(k + half, last)
+        out[k] = (way[after] - way[before]) / (after - before)
+    return out
+
+
+def angle_of(speed: Array, dt: float, first_rad: float) -> Array:
+    """Angle in rad of a speed in rad/s, (n,), from the first sample's: the same integral."""
+    padded = np.concatenate([speed[:1], speed, speed[-1:]])
+    inner, outer = padded[1:-2] + padded[2:-1], padded[:-3] + padded[3:]
+    return np.asarray(first_rad + dt * np.concatenate([[0.0], np.cumsum((13.0 * inner - outer) / 24.0)]))
+
+
+def turned(samples: Array, dt: float, gear_ratio: float, first_wheel_angle_rad: float = 0.0) -> Array:
+    """Wheel and rotor angle in rad at every sample (n x 2), by the trapezoidal rule.
+
+    A simulated angle drifts off as long as a model is not right to the last digit, and takes the phase of a
+    ripple with it; the measured one does not.
+
+    Args:
+        samples: n x 2 or more, motor and wheel speed in rad/s; a column of NaN follows from the other.
+    """
+    motor, wheel = samples[:, 0], samples[:, 1]
+    if not np.isfinite(wheel[0]):
+        wheel = motor / gear_ratio
+    if not np.isfinite(motor[0]):
+        motor = wheel * gear_ratio
+    speeds = np.nan_to_num(np.column_stack([wheel, motor]))
+    ways = np.cumsum(0.5 * dt * (speeds[1:] + speeds[:-1]), axis=0)
+    first = first_wheel_angle_rad * np.array([1.0, gear_ratio])
+    return np.asarray(first + np.concatenate([np.zeros((1, 2)), ways]), dtype=float)
