@@ -14,6 +14,7 @@ from hil.plant._batch_simulation import ideal_sensors, simulate_many
 from hil.plant._linear import LinearSystem, linear_system, linear_system_of, system
 from hil.plant._motor_limits import refuse_motor_limits
 from hil.plant._packed_sets import begins_of, turns
+from hil.plant._regulated import followed, given_outputs, turning_of
 from hil.plant._replay import Start, gear_ratio_of, load_of, replay, replayed, simulate
 from hil.plant._stability import LONGEST_STEP_S, is_stable, refuse_diverged_state, refuse_too_stiff
 from hil.plant.sensors import DELAY as SENSOR_DELAY
@@ -22,9 +23,10 @@ from hil.plant.sensors import OFFSET as SENSOR_OFFSET
 from hil.plant.sensors import STEP as SENSOR_STEP
 from hil.plant.sensors import TURNED as SENSOR_TURNED
 from hil.plant.sensors import bench_sensor, sensor_of, sensor_response
-from hil.plant.slots import chain_numbers, pack
+from hil.plant.slots import GEAR_RATIO, chain_numbers, is_regulated, pack
 
 __all__ = [
+    "GEAR_RATIO",
     "LONGEST_STEP_S",
     "SENSOR_DELAY",
     "SENSOR_GAIN",
@@ -41,9 +43,12 @@ __all__ = [
     "bench_sensor",
     "by_angle",
     "chain_numbers",
+    "followed",
     "gear_ratio_of",
+    "given_outputs",
     "half_window",
     "ideal_sensors",
+    "is_regulated",
     "is_stable",
     "linear_system",
     "linear_system_of",
@@ -61,5 +66,6 @@ __all__ = [
     "speed_of",
     "system",
     "turned",
+    "turning_of",
     "turns",
 ]

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from hil.core.channels import ANGLES, OUTPUTS
 from hil.core.recording import Recording
-from hil.core.runtime.compiled import compiled
+from hil.plant.sensors import mean_around
 
 Array = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
@@ -61,21 +61,6 @@ def as_read(speeds: Array, of_angle: Flags, dt: float) -> Array:
         for one, turns in zip(speeds.T, of_angle.tolist(), strict=True)
     ]
     return np.column_stack(columns)
-
-
-@compiled
-def mean_around(speed, half):  # type: ignore[no-untyped-def]
-    """What `speed_of` reads of the angle of a speed, (n,): cubic between samples, as is its integral."""
-    last = speed.shape[0] - 1
-    way = np.zeros(speed.shape[0])
-    for k in range(last):
-        outer = speed[max(k - 1, 0)] + speed[min(k + 2, last)]
-        way[k + 1] = way[k] + (13.0 * (speed[k] + speed[k + 1]) - outer) / 24.0
-    out = np.empty(speed.shape[0])
-    for k in range(speed.shape[0]):
-        before, after = max(k - half, 0), min(k + half, last)
-        out[k] = (way[after] - way[before]) / (after - before)
-    return out
 
 
 def angle_of(speed: Array, dt: float, first_rad: float) -> Array:

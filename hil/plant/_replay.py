@@ -17,6 +17,7 @@ from hil.core.recording import Recording
 from hil.plant import _angles, _recorded, kernel, slots
 from hil.plant._batch_simulation import simulate_many
 from hil.plant._functions import respond_many
+from hil.plant._regulated import turning_load
 from hil.plant._stability import LONGEST_STEP_S, refuse_divergence, refuse_too_stiff
 from hil.plant.sensors import GAIN, OFFSET, STEP, measured, sensor_of
 from hil.plant.sides import LUMPED, form_of
@@ -117,9 +118,9 @@ def replay(model: Model, recording: Recording) -> Recording:
 
     It begins at what the first samples show, within their noise where the next seconds suit best. Ripples
     follow the angle that recorded speeds turn through. Where the model has a `load_input`, that channel
-    brakes its wheels. Where an angle was recorded in place of a speed, both are given, the angle from its
-    first reading on. Uneven time stamps are resampled (input held, load and outputs interpolated); `notes`
-    says so.
+    brakes its wheels, or they turn as it says. Where an angle was recorded in place of a speed, both are
+    given, the angle from its first reading on. Uneven time stamps are resampled (input held, load and
+    outputs interpolated); `notes` says so.
 
     Raises:
         BadInputError: the simulation diverges, or would; or the model's load was not recorded.
@@ -148,7 +149,7 @@ def replay(model: Model, recording: Recording) -> Recording:
         channels[ANGLES[name]] = _angles.angle_of(channels[name], dt, first)
     if not even:
         channels = {name: np.interp(time, grid, values) for name, values in channels.items()}
-    inputs = {name: recording[name] for name in (INPUT, model.load_input) if name}
+    inputs = {name: recording[name] for name in (INPUT, model.load_input) if name in recording}
     return Recording({TIME: time, **inputs, **channels}, recording.source, notes=notes)
 
 
@@ -203,11 +204,15 @@ def replayed(
 def load_of(model: Model, recording: Recording) -> Array | None:
     """The recorded torque in N m that brakes a model's wheels; None for a model that takes none.
 
+    Of wheels that turn as recorded it is the torque that has them do so (`_regulated`).
+
     Raises:
         BadInputError: the recording does not have it.
     """
     if not model.load_input:
         return None
+    if slots.is_regulated(model):
+        return turning_load(model, recording)
     if model.load_input not in recording:
         raise BadInputError(
             f"has no channel {model.load_input}, and the model takes it as its load",

@@ -16,7 +16,6 @@ from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.runtime.compiled import compiled, inlined
-from hil.plant._angles import mean_around
 from hil.plant.slots import Table
 
 Array = npt.NDArray[np.float64]
@@ -68,6 +67,21 @@ def lagged(y, before, now, lag, dt):  # type: ignore[no-untyped-def]
     decay = math.exp(-dt / lag)
     mean = (1.0 - decay) * lag / dt
     return decay * y + (mean - decay) * before + (1.0 - mean) * now
+
+
+@compiled
+def mean_around(speed, half):  # type: ignore[no-untyped-def]
+    """What the angle of a speed turns by around each sample, (n,), over time; cubic between samples."""
+    last = speed.shape[0] - 1
+    way = np.zeros(speed.shape[0])
+    for k in range(last):
+        outer = speed[max(k - 1, 0)] + speed[min(k + 2, last)]
+        way[k + 1] = way[k] + (13.0 * (speed[k] + speed[k + 1]) - outer) / 24.0
+    out = np.empty(speed.shape[0])
+    for k in range(speed.shape[0]):
+        before, after = max(k - half, 0), min(k + half, last)
+        out[k] = (way[after] - way[before]) / (after - before)
+    return out
 
 
 @compiled

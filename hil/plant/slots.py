@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.chain import KINDS, MEANINGS, RIGID, THREE_INERTIA, TWO_INERTIA, Chain
+from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS, Effect
 from hil.core.errors import BadInputError
 
@@ -91,6 +92,9 @@ for _effect in ACTING:
     FIRST[_effect.id] = len(SLOTS)
     for _parameter in _effect.parameters:
         SLOTS.place(f"{_effect.id}.{_parameter.name}", _parameter.unit, _parameter.meaning)
+#: Of wheels that turn as recorded (`_regulated`): a thousand N m for a minute move them by 1e-4 rad/s, and
+#: doubles still resolve 1e-6 N m beside what does turn them.
+HEAVY_KG_M2 = 1e7
 #: Dead time of the torque path before transfer functions that stands for none, s: effects may shorten theirs.
 PATH_DELAY_S = 1.0
 
@@ -123,6 +127,11 @@ def pack_nothing() -> npt.NDArray[np.float64]:
     return _PLAIN.copy()
 
 
+def is_regulated(model: Model) -> bool:
+    """Whether the wheels turn as recorded."""
+    return bool(model.load_input == OUTPUTS[1])
+
+
 def pack(model: Model) -> npt.NDArray[np.float64]:
     """Parameter vector of a mechanical model; of a transfer-function model that of its torque path.
 
@@ -153,6 +162,8 @@ def pack(model: Model) -> npt.NDArray[np.float64]:
             acting.append(use)
     for use in corrections:
         _change(chain, use)
+    if is_regulated(model):
+        chain["wheel_inertia" if chain["kind"] == THREE_INERTIA else "vehicle_inertia"] = HEAVY_KG_M2
     numbers = Chain(**chain)
     vector[:CHAIN] = numbers
     for use in acting:

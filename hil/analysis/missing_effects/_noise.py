@@ -11,7 +11,7 @@ from hil.analysis.missing_effects._series import Series
 from hil.analysis.missing_effects._spectrum import bands_of, edges_hz
 from hil.analysis.power_density import power_density
 from hil.core.channels import ANGLES, OUTPUTS
-from hil.plant import half_window
+from hil.plant import GEAR_RATIO, followed, half_window, turning_of
 
 Array = npt.NDArray[np.float64]
 
@@ -31,7 +31,7 @@ def proven_noise(series: Sequence[Series], stated: Mapping[str, float]) -> Array
     """
     levels = np.full(len(OUTPUTS), np.nan)
     for column, name in enumerate(OUTPUTS):
-        have = [one for one in series if one.has[column]]
+        have = [one for one in series if np.isfinite(one.samples[0, column])]
         if not have:
             continue
         if any(one.of_angle[column] for one in have):
@@ -76,6 +76,29 @@ def colour_of(series: Sequence[Series]) -> Array | None:
     octaves = np.bincount(band, power, len(edges) - 1) / np.maximum(count, 1)
     colour[one.of_angle] = np.maximum(octaves, _LEAST_COLOUR)
     return colour
+
+
+def with_motion(
+    noise: Array, colour: Array | None, series: Sequence[Series], slots: Array
+) -> tuple[Array, Array]:
+    """Noise (3,) and its colour (3 x bands) with that of recorded turning, as a packed model shows it."""
+    one = series[0]
+    edges = edges_hz(one.rate_hz)
+    frequency: Array = (np.arange(one.block * _BINS, dtype=np.float64) + 0.5) / (
+        2 * one.block * _BINS * one.dt
+    )
+    mean = np.sin(np.pi * frequency * one.block * one.dt) / (one.block * np.sin(np.pi * frequency * one.dt))
+    turning = turning_of(one.turning(float(slots[GEAR_RATIO])), one.dt).noise_at(frequency)
+    square = turning * np.square(followed(slots, frequency) * mean) / one.block
+    # of means of blocks what is faster than half their rate looks slow
+    folded = np.abs((frequency + 0.5 * one.rate_hz) % one.rate_hz - 0.5 * one.rate_hz)
+    band = bands_of(edges, folded)
+    count = np.maximum(np.bincount(band, minlength=len(edges) - 1), 1) / one.block
+    octaves = np.stack([np.bincount(band, row, len(edges) - 1) / count for row in square])
+    own = noise[:, None] ** 2 * (np.ones(octaves.shape) if colour is None else colour)
+    level = noise**2 + one.block * square.mean(axis=1)
+    there = np.isfinite(noise)[:, None]  # a channel that is not compared has no colour
+    return np.sqrt(level), np.where(there, (own + octaves) / level[:, None], 1.0)
 
 
 def _together(one: Series) -> Array:

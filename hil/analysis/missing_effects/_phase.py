@@ -108,7 +108,8 @@ class _Walk:
         """Of the walk of an integrated speed with white noise, rad²/s; next to none of an angle."""
         ratio = gear_ratio_of(self.point.hypothesis.model()) or 1.0
         onto = np.array([1.0, ratio]) if side == "rotor" else np.array([1.0 / ratio, 1.0])
-        noise = np.where(self.one.has[:2], self.problem.noise[:2] * onto, np.inf)
+        recorded = np.isfinite(self.one.samples[0, :2])
+        noise = np.where(recorded, self.problem.noise[:2] * onto, np.inf)
         if self.one.of_angle.any():
             noise[:2][self.one.of_angle[:2]] *= _NO_WALK
         return float(np.min(noise) ** 2 * self.one.block * self.one.dt)

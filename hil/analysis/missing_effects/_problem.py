@@ -11,17 +11,18 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._allowance import UNBOUNDED, Allowance
 from hil.analysis.missing_effects._hypothesis import Coordinate, Hypothesis
-from hil.analysis.missing_effects._noise import colour_of
+from hil.analysis.missing_effects._noise import colour_of, with_motion
 from hil.analysis.missing_effects._series import Series
 from hil.analysis.missing_effects._shown import Shown
 from hil.analysis.missing_effects._spectrum import Powers, Spectrum, of_noise, powers_of
 from hil.core.model import Model, TransferFunction
 from hil.core.runtime.thread_map import map_on_threads
-from hil.plant import SENSOR_TURNED, begins_of, gear_ratio_of, simulate_many, turns
+from hil.plant import SENSOR_TURNED, begins_of, gear_ratio_of, is_regulated, pack, simulate_many, turns
 
 Array = npt.NDArray[np.float64]
 _Result = TypeVar("_Result")
 
+_BEHIND_WHEELS = frozenset({"wheel_inertia", "tyre_stiffness", "tyre_damping", "vehicle_inertia"})
 STATES = 5  # of a start: motor speed, wheel speed, shaft torque, and two of a motion inside the tyre
 _FAR = 1e9  # a simulation that runs away is so many standard deviations off, not infinitely many
 _SLOW_NOISE = 1.2  # times its white noise may a sensor's error be where its slow noise is not proven
@@ -187,6 +188,7 @@ class Problem:
         speed = max(float(np.nanmax(np.abs(one.samples[:, :2]))) if one.has[:2].any() else 1.0, 1e-6)
         torque = max(float(np.max(np.abs(one.torque))), 1e-9)
         sizes = 1e-3 * np.array([speed, speed, torque, speed, speed / 100.0])
+        sizes[:3][one.given] = 0.0
         starts = np.concatenate([start[None], start + np.diag(sizes)])
         shown = self.simulated(index, [hypothesis.packed()] * (STATES + 1), starts)
         change = self._changes(index, shown[1:] - shown[0])
@@ -286,6 +288,8 @@ def problem_of(
     """The problem of a base model and recordings, errors weighed by noise where no spectrum is given."""
     ratio = gear_ratio_of(model) or 1.0
     colour = colour_of(series)
+    if is_regulated(model):
+        noise, colour = with_motion(noise, colour, series, pack(model))
     return Problem(
         model,
         tuple(series),
@@ -295,8 +299,16 @@ def problem_of(
         _scales(model, series),
         angles=tuple(one.angles(ratio) for one in series),
         colour=colour,
-        held=frozenset() if any(one.has[1:].any() for one in series) else frozenset({"gear_ratio"}),
+        held=_held(model, series),
     )
+
+
+def _held(model: Model, series: Sequence[Series]) -> frozenset[str]:
+    """Numbers without effect: those behind wheels that turn as recorded, a gear to a side that was not."""
+    if is_regulated(model):
+        rigid = {"gear_ratio"} if model.kind == "rigid" else set()
+        return (_BEHIND_WHEELS & model.parameters.keys()) | rigid
+    return frozenset() if any(one.has[1:].any() for one in series) else frozenset({"gear_ratio"})
 
 
 def _signal(series: Sequence[Series]) -> Array:

@@ -18,7 +18,7 @@ from hil.core.channels import ANGLES, ANY_OUTPUT, INPUT, OUTPUTS, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
-from hil.plant import angle_at, by_angle, half_window, load_of, speed_of, turned
+from hil.plant import angle_at, by_angle, given_outputs, half_window, load_of, speed_of, turned, turning_of
 
 Array = npt.NDArray[np.float64]
 
@@ -35,7 +35,8 @@ class Series:
     """One stretch of a recording.
 
     `torque` is held over samples of `dt` seconds; `samples` (n x 3, in the order of `OUTPUTS`) has NaN where
-    a channel was not recorded; `measured` (blocks x 3) are means of `block` samples; `load` brakes the wheels
+    a channel was not recorded; `measured` (blocks x 3) are means of `block` samples, NaN also where a channel
+    is `given` to the model (its wheels turn as recorded); `load` brakes the wheels
     in N m, None where the model takes none. `even`: samples are readings, else interpolated between them.
     A speed may have been recorded as an `angle` (n x 3, rad; NaN where not): then it is what that turns by
     around each sample (`hil.plant.speed_of`).
@@ -51,12 +52,13 @@ class Series:
     first_wheel_angle_rad: float
     notes: tuple[str, ...]
     even: bool = True
+    given: npt.NDArray[np.bool_] = field(default_factory=lambda: np.zeros(len(OUTPUTS), dtype=bool))
     angle: Array = field(default_factory=lambda: np.full((1, len(OUTPUTS)), np.nan))
 
     @property
     def has(self) -> npt.NDArray[np.bool_]:
-        """Which channels were recorded, shape (3,)."""
-        return np.asarray(np.isfinite(self.samples[0]), dtype=bool)
+        """Which channels were recorded to be compared, shape (3,)."""
+        return np.asarray(np.isfinite(self.measured[0]), dtype=bool)
 
     @property
     def of_angle(self) -> npt.NDArray[np.bool_]:
@@ -96,11 +98,20 @@ class Series:
     def first_state(self, gear_ratio: float) -> Array:
         """A first guess of motor speed, wheel speed and shaft torque, no motion inside a tyre: (5,)."""
         motor, wheel, shaft = self.samples[:_FIRST_SAMPLES].mean(axis=0)
+        if self.given[1]:
+            wheel = turning_of(self.turning(gear_ratio), self.dt).first
+        if self.given[0]:
+            motor = wheel * gear_ratio
         if not np.isfinite(motor):
             motor = wheel * gear_ratio
         if not np.isfinite(wheel):
             wheel = motor / gear_ratio
         return np.asarray(np.nan_to_num(np.array([motor, wheel, shaft, 0.0, 0.0])), dtype=float)
+
+    def turning(self, gear_ratio: float) -> Array:
+        """Recorded speed of the wheels at every sample, by the motor's where it was not recorded itself."""
+        wheel = self.samples[:, 1]
+        return wheel if np.isfinite(wheel[0]) else self.samples[:, 0] / gear_ratio
 
     def angles(self, gear_ratio: float) -> Array:
         """Wheel and rotor angle in rad at every sample (n x 2), integrated from the recorded speeds."""
@@ -151,17 +162,19 @@ def _series(model: Model, recording: Recording) -> Series:
     if not even:  # a block without a reading of its own would show what was interpolated
         block = max(block, math.ceil(float(np.quantile(np.diff(time), _USUAL)) / dt))
     blocks = len(grid) // block
-    load = load_of(model, recording)
+    load, given = load_of(model, recording), given_outputs(model)
+    measured = samples[: blocks * block].reshape(blocks, block, -1).mean(axis=1)
     return Series(
         recording.source.stem,
         np.ascontiguousarray(recording[INPUT][nearest if even else held], dtype=float),
         dt,
         block,
         samples,
-        samples[: blocks * block].reshape(blocks, block, -1).mean(axis=1),
+        np.where(given, np.nan, measured),
         None if load is None else on_grid(load),
         float(recording[WHEEL_ANGLE][0]) if WHEEL_ANGLE in recording else 0.0,
         () if even else (f"{recording.source.stem}: uneven time stamps, put on a grid of {dt * 1e3:.4g} ms",),
         even,
+        given,
         angle,
     )

@@ -17,6 +17,7 @@ from hil.core.model._reading import model_from_dict
 from hil.core.model._types import (
     LOAD_INPUTS,
     MODEL_KINDS,
+    SPEED_INPUT,
     WHEEL_RADII_M,
     EffectUse,
     Model,
@@ -88,6 +89,7 @@ def refuse_without_vehicle(model: Model, where: str, fix: str) -> None:
 __all__ = [
     "LOAD_INPUTS",
     "MODEL_KINDS",
+    "SPEED_INPUT",
     "WHEEL_RADII_M",
     "EffectUse",
     "Model",

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from hil.core.chain import WHEEL_RADIUS_M
+from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 
 #: Parameters by name: unit, and whether zero is possible.
@@ -49,8 +50,10 @@ MODEL_KINDS: dict[str, tuple[str, ...]] = {
     ),
     "transfer_function": (),
 }
-#: Channels that may brake a model's wheels: positive against forward motion, left plus right.
-LOAD_INPUTS = ("dyno_torque_ref_nm",)
+#: The load input that is no torque: the wheels turn as recorded (a dynamometer that regulates their speed).
+SPEED_INPUT = OUTPUTS[1]
+#: Channels that load a model's wheels; torque is positive against forward motion, left plus right.
+LOAD_INPUTS = ("dyno_torque_ref_nm", SPEED_INPUT)
 #: Smallest and largest radius of a wheel.
 WHEEL_RADII_M = (0.01, 10.0)
 
@@ -83,7 +86,7 @@ class Model:
     """A plant model; the input is `motor_torque_ref_nm`, the outputs are `OUTPUTS`.
 
     `load_input` names a recorded channel whose torque brakes the wheels (the load where there is no wheel),
-    beside what the model itself holds of the vehicle; '' for none.
+    beside what the model itself holds of the vehicle, or whose speed they have (`SPEED_INPUT`); '' for none.
     """
 
     kind: str

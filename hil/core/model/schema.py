@@ -33,7 +33,7 @@ def model_schema() -> dict[str, Any]:
             "wheel_radius_m": {"type": "number", "minimum": low, "maximum": high},
             "load_input": {
                 "enum": ["", *LOAD_INPUTS],
-                "description": "recorded channel that brakes the wheels",
+                "description": "recorded channel that brakes the wheels, or whose speed they have",
             },
             "effects": {"type": "array", "items": _effects()},
             "transfer_functions": _functions(),

@@ -152,7 +152,9 @@ class _Shown:
     def overlays(self) -> tuple[Overlay, ...]:
         """Measured and simulated of each recording."""
         every = zip(self.traces, self.before_samples, self.after_samples, strict=True)
-        return tuple(Overlay(t.name, t.dt, t.torque, t.samples, b, a) for t, b, a in every)
+        return tuple(
+            Overlay(t.name, t.dt, t.torque, np.where(t.has, t.samples, np.nan), b, a) for t, b, a in every
+        )
 
 
 def _outputs(replays: Sequence[Replay], model: Model) -> list[Array]:
