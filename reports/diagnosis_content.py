@@ -20,15 +20,24 @@ from hil.core.effects import EFFECTS
 from hil.core.errors.wording import multiple, share
 from hil.core.model import parameter_unit
 from reports import labels
-from reports.diagnosis_figures import WINDOW_S, GapBars, GapRow, overlay_figures, shown_overlay
+from reports.diagnosis_figures import (
+    WINDOW_S,
+    GapBars,
+    GapRow,
+    curve_figures,
+    overlay_figure,
+    overlay_figures,
+    shown_overlay,
+)
 from reports.diagnosis_names import (
     alternatives_table,
     effects_table,
     effects_text,
     names_of,
 )
+from reports.diagnosis_steps import next_steps
 from reports.labels import Label, channel_label, parameter_title
-from reports.parts import Cell, Map, Part, Table
+from reports.parts import Cell, Map, Part, Table, paired
 
 Array = npt.NDArray[np.float64]
 
@@ -106,11 +115,11 @@ def _over_noise(gaps: Mapping[str, ChannelGap]) -> dict[str, float]:
 
 
 def first(found: Diagnosis) -> Part:
-    """The gaps that count most, of each channel beside what noise alone gives."""
+    """What is missing and how sure, its curve, how much of the gap it closes on data that were not fitted."""
     held = bool(found.holdout_after)
-    table = _gaps(found)[-1 if held else 0]
-    text = "Rms of measured minus simulated, in % of the channel's own rms around its mean."
-    return Part("glance", "Gap per channel", text, (table,), figures=(_bars(found),))
+    tables = (*_if_any(effects_table(found)), _gaps(found)[-1 if held else 0])
+    figures = (*curve_figures(found)[:1], overlay_figure(shown_overlay(found)))
+    return Part("glance", "What is missing, and what it closes", "", tables, figures=figures)
 
 
 def parts(found: Diagnosis) -> list[Part]:
@@ -118,8 +127,9 @@ def parts(found: Diagnosis) -> list[Part]:
     overlay = shown_overlay(found)
     first = Part("start", "Identified first", _start_text(found), _if_any(_start(found)))
     return [
+        Part("next", "What to do next", "", _if_any(next_steps(found))),
         *([first] if found.start is not None else []),
-        Part("effects", "Effects named", effects_text(found), _if_any(effects_table(found))),
+        Part("effects", "Effects named", effects_text(found), figures=paired(curve_figures(found)[1:])),
         Part(
             "gap",
             "Gap per channel",
@@ -127,6 +137,7 @@ def parts(found: Diagnosis) -> list[Part]:
             "mean. The noise floor is the same for the noise that is proven: by the spectrum above all "
             f"modes, by the distance of readings, or as stated.{_what_stays(found)}",
             _gaps(found),
+            figures=(_bars(found),),
         ),
         Part(
             "map",

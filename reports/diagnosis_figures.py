@@ -6,14 +6,15 @@ them says what noise alone makes.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hil.analysis.diagnosis import Diagnosis, Overlay
+from hil.analysis.diagnosis import Curve, Diagnosis, Overlay
 from hil.analysis.power_density import power_density
 from hil.core.channels import CHANNELS, OUTPUTS
+from hil.core.effects import EFFECTS
 from reports import labels, style
 from reports.figure import Figure, Trace
 from reports.labels import Label, channel_label
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 WINDOW_S = 1.5
+_MEASURED = "Measured: what the momentum does not account for, means of a fifth of a second."
+_RECORDED = "Measured: torque of the shafts as recorded, over the twist of the model."
 
 
 def shown_overlay(found: Diagnosis) -> Overlay:
@@ -37,6 +40,34 @@ def overlay_figures(overlay: Overlay) -> tuple[Figure, ...]:
         if np.isfinite(overlay.measured[0, column]):
             figures += [draw(overlay, column, channel) for draw in (_in_time, _residual, _in_frequency)]
     return tuple(figures)
+
+
+def curve_figures(found: Diagnosis) -> tuple[Figure, ...]:
+    """The torques that are missing, as measured, each beside the law of its name."""
+    return tuple(_curve_figure(number, curve) for number, curve in enumerate(found.curves, start=1))
+
+
+def _curve_figure(number: int, curve: Curve) -> Figure:
+    over, _, unit = curve.over.partition(" in ")
+    named = curve.law_nm is not None
+    title = EFFECTS[curve.effect.partition("(")[0]].title if named else "What stays without a name"
+    measured = Trace(Label("measured"), curve.at, curve.torque_nm, "measured", points=True, width=2.0)
+    law: tuple[Trace, ...] = ()
+    if curve.law_nm is not None:
+        law = (Trace(Label("its law"), curve.at, curve.law_nm, "gain", width=1.6),)
+    return Figure(
+        f"curve-{number}", Label(f"{title}: torque over {over}"), f"{over[:1].upper()}{over[1:]}", unit,
+        Label("torque"), "N m", (*law, measured), caption=_MEASURED if over != "twist" else _RECORDED,
+    )  # fmt: skip
+
+
+def overlay_figure(overlay: Overlay) -> Figure:
+    """Measured and simulated of the channel that the new model changes most, narrow."""
+    has = np.flatnonzero(np.isfinite(overlay.measured[0]))
+    spread = np.var(overlay.measured[:, has], axis=0) + 1e-12
+    changed = np.mean((overlay.after - overlay.before)[:, has] ** 2, axis=0) / spread
+    column = int(has[np.argmax(changed)])
+    return replace(_in_time(overlay, column, OUTPUTS[column]), id="before-and-after", wide=False)
 
 
 def _change(overlay: Overlay) -> float:

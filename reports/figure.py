@@ -22,7 +22,8 @@ class Trace:
     """One line: `x`, `y` are 1-D of one length; NaN in `y` is a gap. `role` names a tone of the style.
 
     `points` draws samples instead of a line; `spread` is the lower and the upper edge of a shade around it.
-    `width` is how many times as wide as usual it is: a wide line shows beside a thin one that lies on it.
+    `width` is how many times as wide as usual it is, or how much larger its points: a wide line shows beside
+    a thin one that lies on it.
     """
 
     label: Label

@@ -58,7 +58,7 @@ def _trace(trace: Trace, figure: Figure) -> dict[str, Any]:
     return {
         "type": "scatter",
         "mode": "markers" if trace.points else "lines",
-        **({"marker": {"size": 4}} if trace.points else {}),
+        **({"marker": {"size": 4 * trace.width}} if trace.points else {}),
         "name": trace.label.as_html(),
         "meta": trace.role,
         "x": _packed(x),

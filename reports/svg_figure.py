@@ -59,6 +59,7 @@ _LEFT_MM, _RIGHT_MM, _BOTTOM_MM, _TOP_MM = 14.5, 3.5, 8.5, 1.5
 _LEGEND_ROW_MM = 3.4
 _MOST_LEGEND_ROWS = 6
 _PLATE = {"facecolor": "white", "alpha": 0.85, "linewidth": 0, "pad": 0.6}  # no line strikes a label through
+_POINT = 1.6  # size of a sample
 _CLEAR_PT = 1.6  # between a level and its label
 _DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
 
@@ -124,7 +125,10 @@ def _draw(axes: Axes, figure: Figure) -> list[Line2D]:
             axes.fill_between(trace.x, *trace.spread, color=tone, alpha=0.25, linewidth=0)
         if trace.points:
             tone = style.SERIES[trace.role].light
-            lines += axes.plot(trace.x, trace.y, "o", color=tone, markersize=1.6, markeredgewidth=0, zorder=4)
+            size = _POINT * trace.width
+            lines += axes.plot(
+                trace.x, trace.y, "o", color=tone, markersize=size, markeredgewidth=0, zorder=4
+            )
             continue
         points = style.POINTS_ON_PAPER * (2 if figure.wide else 1)
         x, y = envelope(trace.x, trace.y, points, logarithmic=figure.logarithmic)

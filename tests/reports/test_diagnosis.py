@@ -17,6 +17,7 @@ from hil.analysis.diagnosis import (
     CONDITIONS,
     Alternative,
     ChannelGap,
+    Curve,
     Diagnosis,
     GapMap,
     NamedEffect,
@@ -28,6 +29,7 @@ from hil.core.model import EffectUse, Model, load_model
 from reports.diagnosis import diagnosis_html, diagnosis_pdf
 from reports.diagnosis_content import first, headline, lead, parts
 from reports.diagnosis_figures import overlay_figures
+from reports.diagnosis_steps import next_steps
 from reports.figure import Figure
 from reports.outputs.autotune import effects_in_words
 
@@ -191,10 +193,49 @@ def test_measured_is_drawn_over_what_was_simulated(found: Diagnosis) -> None:
     assert all(figure.traces[-1].label.text == "measured" for figure in shown)
 
 
-def test_the_first_screen_has_the_gaps_and_their_picture(found: Diagnosis) -> None:
-    part = first(found)
-    assert part.tables[0].head[0] == "held-out recordings"
-    assert [figure.alternative_text()[:25] for figure in part.figures] == ["Measured minus simulated."]
+def test_the_first_screen_answers_what_is_missing_and_how_much_it_closes(found: Diagnosis) -> None:
+    at = np.linspace(-0.1, 0.1, 24)
+    play = Curve("backlash", "twist in rad", at, 6000.0 * at, 6000.0 * at, 0.99)
+    part = first(dataclasses.replace(found, curves=(play,)))
+    assert [table.head[0] for table in part.tables] == ["effect", "held-out recordings"]
+    curve, overlay = part.figures
+    assert isinstance(curve, Figure)
+    assert isinstance(overlay, Figure)
+    assert (curve.title.text, curve.x_title) == ("Backlash: torque over twist", "Twist (rad)")
+    assert [trace.label.text for trace in curve.traces] == ["its law", "measured"]
+    assert [trace.label.text for trace in overlay.traces] == ["model after", "model before", "measured"]
+
+
+def test_what_stays_without_a_name_is_drawn_without_a_law(found: Diagnosis) -> None:
+    at = np.linspace(0.0, 6.0, 24)
+    stays = Curve("", "angle within a turn in rad", at, np.sin(at), None, 0.9)
+    changed = dataclasses.replace(found, verdict="unknown", effects=(), curves=(stays,))
+    curve = first(changed).figures[0]
+    assert isinstance(curve, Figure)
+    assert curve.title.text == "What stays without a name: torque over angle within a turn"
+    assert len(curve.traces) == 1
+    assert ("Look at the torque that stays: it follows angle within a turn in rad") in str(
+        next_steps(changed)
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({}, ("Tell backlash from channel skew", "hil run separate_channel_skew.yaml, then diagnose again")),
+        ({}, ("Go on with the new model", "hil tune PLAN --model model.toml")),
+        ({"holdout_after": {}}, ("Hold a recording back", "--holdout RECORDING")),
+        ({"open_channels": (SHAFT,)}, ("Record more: more than noise stays in shaft torque", "coast-down")),
+        ({"held_out_open": (SHAFT,)}, ("Give the held-out recordings as recordings too", "--holdout")),
+        ({"unfinished": "interrupted"}, ("Let the search end", "--at-most MINUTES")),
+        ({"verdict": "unknown", "effects": ()}, ("Look where the gap is", "chirps at two amplitudes")),
+    ],
+)
+def test_the_report_says_what_to_do_next(
+    found: Diagnosis, changes: dict[str, Any], said: tuple[str, str]
+) -> None:
+    steps = next_steps(dataclasses.replace(found, **changes)).rows
+    assert any(what.startswith(said[0]) and said[1] in how for what, how in steps), steps
 
 
 def test_a_name_is_never_quite_certain(found: Diagnosis) -> None:

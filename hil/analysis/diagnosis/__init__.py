@@ -12,7 +12,7 @@ from hil.analysis.diagnosis.findings.result import (
     Overlay,
 )
 from hil.analysis.diagnosis.findings.words import Where
-from hil.analysis.missing_effects import INTERRUPTED
+from hil.analysis.missing_effects import INTERRUPTED, Curve
 
 __all__ = [
     "BANDS_HZ",
@@ -21,6 +21,7 @@ __all__ = [
     "LEAST_SAMPLES",
     "Alternative",
     "ChannelGap",
+    "Curve",
     "Diagnosis",
     "GapMap",
     "NamedEffect",

@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.missing_effects._hypothesis import Hypothesis
-from hil.analysis.missing_effects._mass import WINDOW_S, Mass, mass_of
+from hil.analysis.missing_effects._mass import WINDOW_S, Mass, brakes, mass_of
 from hil.analysis.missing_effects._orders import PERIODS, fineness, over_angle, peaks
 from hil.analysis.missing_effects._series import Series
 from hil.core.effects import EFFECTS
@@ -75,7 +75,7 @@ def _wider(mass: Mass, hypothesis: Hypothesis) -> Iterator[Hypothesis]:
     taken = {use.id for use in (*hypothesis.base.effects, *hypothesis.terms)}
     for effect in EFFECTS.values():
         law = effect.law
-        if effect.id in taken or hypothesis.kind not in effect.needs or not mass.braked_by(effect):
+        if effect.id in taken or hypothesis.kind not in effect.needs or not brakes(effect):
             continue
         if law.follows is not None:
             for order in _orders(mass, hypothesis):
@@ -131,7 +131,7 @@ def _regression(mass: Mass, hypothesis: Hypothesis) -> tuple[Array, Array, list[
     sizes: list[tuple[int, str, float]] = []
     for index, use in enumerate(hypothesis.terms):
         effect = EFFECTS[use.id]
-        if not mass.braked_by(effect):
+        if not brakes(effect):
             continue
         rest = dict(use.values) | dict.fromkeys(effect.acting(), effect.off)
         names = [

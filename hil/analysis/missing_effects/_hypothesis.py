@@ -9,10 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.chain import Chain
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS, Parameter
 from hil.core.model import EffectUse, Model, kind_of
-from hil.plant import pack, sensor_of
+from hil.plant import chain_numbers, pack, sensor_of
 
 Array = npt.NDArray[np.float64]
 
@@ -132,6 +133,10 @@ class Hypothesis:
         return replace(
             self.base, parameters=dict(self.numbers), effects=(*self.base.effects, *self.terms), meta={}
         )
+
+    def chain(self) -> Chain:
+        """Linear numbers of the model that it is."""
+        return chain_numbers(self.model())
 
     def coordinates(self, scales: Mapping[str, float]) -> list[Coordinate]:
         """All free numbers; `scales` gives the size of numbers of the base that may be zero."""

@@ -80,7 +80,7 @@ class Mass:
         for one in self.series:
             speed = np.abs(self.speed(one))
             still = speed <= max(_QUIET * float(np.max(speed)), _NOISES * self.noise_rad_s)
-            found.append(_hats(one, still.astype(float)) == 0.0)
+            found.append(impulses(one, still.astype(float)) == 0.0)
         return found
 
     def windowed(self, values: Sequence[Array], *, sums: bool) -> Array:
@@ -90,7 +90,7 @@ class Mass:
         of its first: noise of single readings counts little (modulating functions: M. Shinbrot, Trans. ASME
         79 (1957) 547).
         """
-        means = _hats if sums else _changes
+        means = impulses if sums else changes
         every = zip(self.series, values, self._moving, strict=True)
         return np.concatenate([means(one, value)[moving] for one, value, moving in every])
 
@@ -98,43 +98,48 @@ class Mass:
         """Means over the same windows."""
         return self.windowed(values, sums=True) / WINDOW_S
 
-    def braked_by(self, effect: Effect) -> bool:
-        """Whether an effect's torque is in this balance."""
-        law = effect.law
-        return any(one is not None for one in (law.dry, law.loss, law.load))
-
     def column(self, effect: Effect, values: dict[str, float | str], chain: Chain) -> Array:
         """Impulse of an effect's torque against positive motion."""
         numbers = tuple(float(values[p.name]) for p in effect.parameters)
         key = (effect.id, numbers, chain)
         if key not in self._known:
-            torques = [
-                self._torque(one, motions, effect, numbers, chain)
-                for one, motions in zip(self.series, self._motions, strict=True)
-            ]
+            every = zip(self._motions, self.speeds(), strict=True)
+            torques = [law_torque(effect, numbers, chain, motions, speed) for motions, speed in every]
             self._known[key] = self.windowed(torques, sums=True)
         return self._known[key]
 
     @cached_property
     def _motions(self) -> list[list[Motion]]:
         """What laws see of each recording at block means."""
-        tracks = (self.speed, self.wheel, self.angle)
-        every = [zip(*(track(one).tolist() for track in tracks), strict=True) for one in self.series]
-        return [[Motion(w, v, v, 0.0, 0.0, 0.0, 0.0, a, a / self.ratio) for w, v, a in one] for one in every]
+        return [
+            motions_of(self.speed(one), self.wheel(one), self.angle(one), self.ratio) for one in self.series
+        ]
 
-    def _torque(
-        self, one: Series, motions: Sequence[Motion], effect: Effect, numbers: tuple[float, ...], chain: Chain
-    ) -> Array:
-        motor = self.speed(one)
-        law, total = effect.law, np.zeros(len(motor))
-        known = np.abs(motor) > _QUIET * float(np.max(np.abs(motor)))
-        if law.dry is not None:
-            total += np.array([law.dry(m, chain, 0.0, numbers) for m in motions]) * np.sign(motor) * known
-        if law.loss is not None:
-            total += np.array([law.loss(m, chain, 0.0, numbers) for m in motions])
-        if law.load is not None:
-            total += np.array([law.load(m, chain, 0.0, numbers) for m in motions]) / self.ratio
-        return total
+
+def brakes(effect: Effect) -> bool:
+    """Whether an effect is a torque against motion."""
+    return any(one is not None for one in (effect.law.dry, effect.law.loss, effect.law.load))
+
+
+def motions_of(rotor: Array, wheel: Array, angle: Array, ratio: float) -> list[Motion]:
+    """What laws of losses see of rotor and wheel speed and the rotor's angle."""
+    every = zip(*(one.tolist() for one in (rotor, wheel, angle)), strict=True)
+    return [Motion(w, v, v, 0.0, 0.0, 0.0, 0.0, a, a / ratio) for w, v, a in every]
+
+
+def law_torque(
+    effect: Effect, numbers: tuple[float, ...], chain: Chain, motions: Sequence[Motion], rotor: Array
+) -> Array:
+    """Torque of an effect against positive motion in N m, rotor side."""
+    law, total = effect.law, np.zeros(len(rotor))
+    known = np.abs(rotor) > _QUIET * float(np.max(np.abs(rotor)))
+    if law.dry is not None:
+        total += np.array([law.dry(m, chain, 0.0, numbers) for m in motions]) * np.sign(rotor) * known
+    if law.loss is not None:
+        total += np.array([law.loss(m, chain, 0.0, numbers) for m in motions])
+    if law.load is not None:
+        total += np.array([law.load(m, chain, 0.0, numbers) for m in motions]) / chain.gear_ratio
+    return total
 
 
 def mass_of(kind: str, series: Sequence[Series], numbers: Mapping[str, float]) -> Mass | None:
@@ -151,7 +156,7 @@ def block_means(one: Series, values: Array) -> Array:
     return np.asarray(values[: count * one.block].reshape(count, one.block).mean(axis=1))
 
 
-def _hats(one: Series, values: Array) -> Array:
+def impulses(one: Series, values: Array) -> Array:
     """Impulses over the windows of a recording: sums by a hat of height one and twice `WINDOW_S` long."""
     reach = _reach(one)
     between = 0.5 * (values[1:] + values[:-1])  # where speeds change
@@ -159,7 +164,7 @@ def _hats(one: Series, values: Array) -> Array:
     return np.asarray(reach / one.rate_hz * means[:: _hop(reach)])
 
 
-def _changes(one: Series, values: Array) -> Array:
+def changes(one: Series, values: Array) -> Array:
     """Change over the same windows: mean of the second half less that of the first."""
     reach = _reach(one)
     means = _running(values, reach)

@@ -39,12 +39,17 @@ class Named:
 
 @dataclass(frozen=True)
 class Curve:
-    """A latent torque over what it follows best, and the share of its variance that this explains."""
+    """A torque in N m that a balance measures, over what it follows; means of bins.
 
-    place: str
+    `effect` is the name whose torque it is, `law_nm` its law there; '' and None of what stays without one.
+    `share` of the torque's variance is explained so.
+    """
+
+    effect: str
     over: str
     at: Array
     torque_nm: Array
+    law_nm: Array | None
     share: float
 
 
@@ -57,11 +62,15 @@ class Replay:
 
     def outputs(self, model: Model) -> Array:
         """What a model shows at every sample, n x 3: `OUTPUTS`, those of an angle by what it turns by."""
-        return as_read(self._simulated(model), self.series.of_angle, self.series.dt)
+        return as_read(self._simulated(model)[:, : len(OUTPUTS)], self.series.of_angle, self.series.dt)
+
+    def acting(self, model: Model) -> Array:
+        """Motor torque in N m that acts in a model, at every sample (n,)."""
+        return self._simulated(model)[:, len(OUTPUTS)]
 
     def angle(self, model: Model) -> Array:
         """Angles of a model in rad where they were recorded, n x 3, from the first reading on; else NaN."""
-        one, shown = self.series, self._simulated(model)
+        one, shown = self.series, self._simulated(model)[:, : len(OUTPUTS)]
         found = np.full(shown.shape, np.nan)
         for column in np.flatnonzero(one.of_angle).tolist():
             found[:, column] = angle_of(shown[:, column], one.dt, float(one.angle[0, column]))
@@ -75,7 +84,8 @@ class Replay:
         begins = one.first_wheel_angle_rad
         shown = replayed(model, one.torque, one.dt, one.samples, one.load, begins, one.of_angle)
         none = np.zeros(len(one.torque))  # a model of functions may lack one
-        self._shown.append((model, np.column_stack([shown.get(name, none) for name in OUTPUTS])))
+        names = (*OUTPUTS, "motor_torque_nm")
+        self._shown.append((model, np.column_stack([shown.get(name, none) for name in names])))
         return self._shown[-1][1]
 
 

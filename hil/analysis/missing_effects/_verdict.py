@@ -69,7 +69,7 @@ def as_far_as_known(of: Judged, why: str) -> Outcome:
     return Outcome(
         "unknown", (), tuple(_others(of, alone, candidates, weights)), numbers, is_far(numbers, done),
         model, model,
-        curves_of(alone.point.hypothesis, done.problem.series), 0.0,
+        curves_of(alone.point.hypothesis, of.fitted), 0.0,
         done.problem.noise * np.sqrt(done.problem.series[0].block), (), of.fitted, of.held_out,
         unfinished=why,
     )  # fmt: skip
@@ -117,7 +117,7 @@ def judged(of: Judged) -> Outcome:
     return Outcome(
         verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), numbers, far,
         model, done.found[()].point.hypothesis.model(),
-        curves_of(best.point.hypothesis, done.problem.series), 0.0,
+        curves_of(best.point.hypothesis, of.fitted), 0.0,
         done.problem.noise * np.sqrt(done.problem.series[0].block), at.drawn(_DRAWN), of.fitted, of.held_out,
         steadied,
     )  # fmt: skip

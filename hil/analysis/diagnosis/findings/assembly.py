@@ -33,7 +33,7 @@ from hil.analysis.diagnosis.findings.result import (
 from hil.analysis.diagnosis.findings.separating import plan_file, plan_within_recordings, worth_a_plan
 from hil.analysis.diagnosis.findings.thresholds import CHANNEL_NOISES
 from hil.analysis.diagnosis.findings.words import Where, band_of_gap, where_changed
-from hil.analysis.missing_effects import OUT_OF_TIME, Named, Outcome, Replay
+from hil.analysis.missing_effects import OUT_OF_TIME, Curve, Named, Outcome, Replay
 from hil.core.channels import ANGLES, OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.errors.wording import multiple, share
@@ -106,6 +106,7 @@ def diagnosis_of(
         open_channels=_open(fitted.after),
         held_out_open=unseen.open(verdict),
         worse=tuple(made_worse(fitted.map_before, fitted.map_after)),
+        curves=_curves(found, effects) if verdict == "named" else _curves(found, ()),
         angles=_angles(found.fitted, found, base),
         holdout_angles=_angles(found.held_out, found, base),
     )
@@ -162,6 +163,14 @@ def _outputs(replays: Sequence[Replay], model: Model) -> list[Array]:
     return map_on_threads(lambda one: one.outputs(model), replays)
 
 
+def _curves(found: Outcome, effects: tuple[NamedEffect, ...]) -> tuple[Curve, ...]:
+    """Torques of the effects named; where there are none what stays, if it follows anything at all."""
+    labels = [EFFECTS[one.use.id].label(one.use.values) for one in effects]
+    named = tuple(one for one in found.curves if one.effect in labels)
+    stays = tuple(one for one in found.curves if not one.effect and one.share > 0.5)
+    return named if effects else stays[:1]
+
+
 def _angles(
     replays: Sequence[Replay], found: Outcome, base: Model
 ) -> dict[str, tuple[ChannelGap, ChannelGap]]:
@@ -169,7 +178,7 @@ def _angles(
     gaps = {}
     for column, channel in enumerate(OUTPUTS):
         read = [one for one in replays if one.series.of_angle[column]]
-        if read:
+        if read and not any(one.series.lowest_hz > 0.0 for one in read):  # else it drifts as nothing decides
             measured = [one.series.angle[:, column] for one in read]
             noise = found.noise[column] * read[0].series.turned_over_s[column] / np.sqrt(2.0)  # of a reading
             both = (
@@ -231,10 +240,9 @@ def _remaining(found: Outcome, shown: _Shown) -> str:
     conditions = shown.map_after.by_condition[:, column]
     if np.count_nonzero(np.isfinite(conditions)) > 1:
         words.append(f"it is strongest at: {CONDITIONS[int(np.nanargmax(conditions))]}")
-    if found.curves and found.curves[0].share > 0.5:  # the larger part of it
-        words.append(
-            f"{share(found.curves[0].share)} of the torque that is missing follow {found.curves[0].over}"
-        )
+    stays = next((one for one in found.curves if not one.effect), None)
+    if stays is not None and stays.share > 0.5:  # the larger part of it
+        words.append(f"{share(stays.share)} of the torque that is missing follow {stays.over}")
     closest = ", ".join(one.id for one in found.alternatives[:2])
     return "; ".join(words) + (f"; closest, and not close enough: {closest}" if closest else "")
 

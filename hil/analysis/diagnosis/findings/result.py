@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.data.gap import BANDS_HZ, ChannelGap, GapMap
 from hil.analysis.diagnosis.findings.words import Where
+from hil.analysis.missing_effects import Curve
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.files.toml_file import FORMAT
@@ -114,6 +115,8 @@ class Diagnosis:
     unfinished: str = ""
     #: Where the model given back is further off than the one that came, in words.
     worse: tuple[str, ...] = ()
+    #: Torques that are missing, as measured, beside the laws of their names.
+    curves: tuple[Curve, ...] = ()
     #: Gaps of angles that were recorded in place of a speed, before and after; of fitted and held-out ones.
     angles: dict[str, tuple[ChannelGap, ChannelGap]] = field(default_factory=dict)
     holdout_angles: dict[str, tuple[ChannelGap, ChannelGap]] = field(default_factory=dict)
