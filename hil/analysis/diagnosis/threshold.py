@@ -17,8 +17,6 @@ _TESTS = ".venv/bin/python -m pytest tests/hil/analysis/diagnosis/{}"
 #: The command behind each name of a check.
 CHECKS = {
     "bad_input": _TESTS.format("test_bad_input.py"),
-    "noise": _TESTS.format("data/test_noise.py"),
-    "grid": _TESTS.format("data/test_grid.py"),
     "gap": _TESTS.format("data/test_gap.py"),
     "sanity": _TESTS.format("data/test_sanity.py"),
     "trace": _TESTS.format("data/test_trace.py"),

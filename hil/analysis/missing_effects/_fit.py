@@ -8,7 +8,6 @@ simulation.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
@@ -204,11 +203,6 @@ def linearised(problem: Problem, point: Point, *, free: bool = True) -> Linearis
 def _differences(hypothesis: Hypothesis) -> tuple[float, ...]:
     """Times the usual ones, by which slopes are taken, widest first."""
     return _ABRUPT if hypothesis.is_abrupt else (1.0,)
-
-
-def growth(drop: float, whole: float) -> float:
-    """Of log L where a drop of the weighed squares lets the discrepancy shrink along with them."""
-    return -whole * math.log(max(1.0 - drop / max(whole, 1e-300), 1e-12))
 
 
 def bounds_of(coordinates: Sequence[Coordinate], most: float = np.inf) -> tuple[Array, Array]:

@@ -50,7 +50,7 @@ def _of_angles(series: Sequence[Series], column: int, stated_rad: float) -> floa
     have = [one for one in series if one.of_angle[column]]
     angles = [one.angle[:, column] for one in have]
     middle = 0.25 * np.pi * (1.0 + _TOP)  # of white noise differences have 4 sin² of its density
-    white = np.median([_white(np.diff(one)) for one in angles]) / (2.0 * np.sin(middle))
+    white = np.median([white_level(np.diff(one)) for one in angles]) / (2.0 * np.sin(middle))
     step = rounding_step(np.concatenate(angles), often=False)
     digits = 1e-15 * max(float(np.max(np.abs(one))) for one in angles)
     of_a_reading = max(float(white), step / np.sqrt(12.0), stated_rad, digits)
@@ -115,11 +115,11 @@ def _together(one: Series) -> Array:
 def _white_of_blocks(one: Series, column: int) -> float:
     """White noise of block means: by readings; where samples lie between these, by the means."""
     if one.even:
-        return _white(one.samples[:, column]) / float(np.sqrt(one.block))
-    return _white(one.measured[:, column])
+        return white_level(one.samples[:, column]) / float(np.sqrt(one.block))
+    return white_level(one.measured[:, column])
 
 
-def _white(values: Array) -> float:
+def white_level(values: Array) -> float:
     """Standard deviation of a sample, by the median density above `_TOP` of the band (lines left out)."""
     frequency, density = power_density(values[:, None], 1.0, min(_WINDOW, len(values)), average="median")
     return float(np.sqrt(0.5 * np.median(density[frequency > 0.5 * _TOP, 0])))

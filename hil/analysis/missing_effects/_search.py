@@ -17,11 +17,11 @@ from hil.analysis.missing_effects._fit import (
 )
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._linear import structures
-from hil.analysis.missing_effects._minima import other_minimum
 from hil.analysis.missing_effects._odds import Candidate, remains
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import (
     best_by_name,
+    other_minimum,
     promised_by,
     promises,
 )

@@ -18,11 +18,10 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.missing_effects._candidates import Candidates
-from hil.analysis.missing_effects._constancy import constancy
 from hil.analysis.missing_effects._curve import curves_of
-from hil.analysis.missing_effects._drift import held_against_drift
 from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised, point_at
 from hil.analysis.missing_effects._hypothesis import Hypothesis
+from hil.analysis.missing_effects._lasting import constancy, held_against_drift
 from hil.analysis.missing_effects._mismatch import as_the_base_has, is_far, mismatches, numbers_of
 from hil.analysis.missing_effects._noise import rounding_step
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains, weights_of

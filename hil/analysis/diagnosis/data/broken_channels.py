@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis.data.grid import grid_step
 from hil.analysis.diagnosis.data.thresholds import (
     BELOW_STEPS,
     CLIPPED_SHARE,
@@ -23,6 +22,7 @@ from hil.analysis.diagnosis.data.thresholds import (
     TORQUE_MOVES,
 )
 from hil.analysis.diagnosis.data.trace import Trace
+from hil.analysis.missing_effects import rounding_step
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 
@@ -81,7 +81,7 @@ def _below_resolution(trace: Trace, column: int, others: list[Trace]) -> bool:
     if not others or column not in (0, 1):
         return False
     elsewhere = np.concatenate([t.samples for t in others])
-    step = grid_step(elsewhere[:, column])
+    step = rounding_step(elsewhere[:, column])
     if trace.has[1 - column]:
         size = np.std(elsewhere, axis=0)
         turned = float(np.ptp(trace.measured[:, 1 - column]))
@@ -155,7 +155,7 @@ def _cut_off(values: Array, at_end: npt.NDArray[np.bool_], noise: float, torque:
     first, last = _runs(at_end)
     reach = PLATEAU_SAMPLES
     whole = (last - first > reach) & (first >= reach) & (last + reach <= len(values))
-    if grid_step(values) > ROUNDED * noise:
+    if rounding_step(values) > ROUNDED * noise:
         # what the torque does in the last samples of a plateau shows only after it
         moves = [float(np.ptp(torque[a : max(b - reach, a + 1)])) for a, b in zip(first, last, strict=True)]
         whole &= np.array(moves) > TORQUE_MOVES * float(np.ptp(torque))

@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.data.broken_channels import coarse
-from hil.analysis.diagnosis.data.grid import grid_step
 from hil.analysis.diagnosis.data.thresholds import (
     BELOW_STEPS,
     FREEZE_WINDOWS_S,
@@ -22,6 +21,7 @@ from hil.analysis.diagnosis.data.thresholds import (
 )
 from hil.analysis.diagnosis.data.trace import Trace
 from hil.analysis.diagnosis.data.turns import around
+from hil.analysis.missing_effects import rounding_step
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
@@ -51,7 +51,7 @@ def refuse_frozen(trace: Trace, noise: Array, model: Model) -> None:
     moves = np.std(values, axis=0)
     holds = np.maximum(HOLDS_NOISE * noise * scale / np.sqrt(trace.block), HOLDS_SHARE * moves)
     steps = np.array(
-        [BELOW_STEPS * grid_step(trace.samples[:, c]) if trace.has[c] else 0.0 for c in range(3)]
+        [BELOW_STEPS * rounding_step(trace.samples[:, c]) if trace.has[c] else 0.0 for c in range(3)]
     )
     fine = np.array([bool(trace.has[c]) and not coarse(trace, c) for c in range(3)])
     for seconds in FREEZE_WINDOWS_S:

@@ -7,9 +7,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis.data.thresholds import FLOOR_BAND
 from hil.analysis.diagnosis.data.trace import Trace
-from hil.analysis.power_density import power_density
+from hil.analysis.missing_effects import white_level
 from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.files.toml_file import parse_toml
@@ -51,19 +50,7 @@ def noise_levels(traces: Sequence[Trace]) -> Array:
     The median over frequency and over recordings leaves out lines and blows. NaN for a channel that no
     recording has.
     """
-    return _pooled(traces, lambda t, c: _level(t.samples[:, c], t.dt))
-
-
-def _level(values: Array, step: float) -> float:
-    """Standard deviation of a sample of what the top of the spectrum shows; `step` in s."""
-    f, density = _spectrum(values, step)
-    inside = (f >= FLOOR_BAND[0] / step) & (f <= FLOOR_BAND[1] / step)
-    return float(np.sqrt(np.median(density[inside]) * 0.5 / step))
-
-
-def _spectrum(values: Array, step: float) -> tuple[Array, Array]:
-    f, density = power_density(values[:, None], step, min(1024, len(values)), average="median")
-    return f, density[:, 0]
+    return _pooled(traces, lambda t, c: white_level(t.samples[:, c]))
 
 
 def _pooled(traces: Sequence[Trace], level: Callable[[Trace, int], float]) -> Array:

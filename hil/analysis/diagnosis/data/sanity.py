@@ -19,7 +19,6 @@ from hil.analysis.diagnosis.data.broken_channels import coarse, refuse_broken_ch
 from hil.analysis.diagnosis.data.frozen import refuse_frozen
 from hil.analysis.diagnosis.data.mistakes import mistaken
 from hil.analysis.diagnosis.data.noise import noise_levels, usable_noise
-from hil.analysis.diagnosis.data.pair import Pair
 from hil.analysis.diagnosis.data.slow_motion import SlowMotion, slow_motion_of, with_outputs_of
 from hil.analysis.diagnosis.data.thresholds import (
     APART_RAD,
@@ -37,7 +36,14 @@ from hil.analysis.diagnosis.data.thresholds import (
     TURNED_RAD,
 )
 from hil.analysis.diagnosis.data.trace import Trace, trace_of
-from hil.analysis.diagnosis.data.turns import around, beyond_drift, drift_degree, pushes_of, refused_push
+from hil.analysis.diagnosis.data.turns import (
+    Pair,
+    around,
+    beyond_drift,
+    drift_degree,
+    pushes_of,
+    refused_push,
+)
 from hil.analysis.plausible import refuse_implausible
 from hil.analysis.stretches import excerpts, unbroken
 from hil.core.channels import OUTPUTS

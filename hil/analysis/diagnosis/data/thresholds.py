@@ -86,13 +86,6 @@ REVERSAL_S: Annotated[
 LARGE_TORQUE: Annotated[float, Means("of the largest torque", "above it torque is large", "gap")] = 0.6
 HIGH_SPEED: Annotated[float, Means("of the largest speed", "above it speed is high", "gap")] = 0.6
 
-ON_GRID: Annotated[float, Means("mean phasor", "from it on readings lie on a grid", "grid")] = 0.98
-LEAST_LEVELS: Annotated[int, Means("levels", "fewer show no grid", "grid")] = 4
-
-FLOOR_BAND: Annotated[
-    tuple[float, float], Means("of the sample rate", "above all modes: what is left there is noise", "noise")
-] = (0.25, 0.48)
-
 INVERTED: Annotated[float, Means("correlation", "below it a channel is inverted", "bad_input")] = -0.5
 RELATED: Annotated[
     float, Means("correlation", "below it two channels have nothing to do with each other", "bad_input")

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hil.analysis.missing_effects._constancy import constancy
 from hil.analysis.missing_effects._fit import fit, linearised, point_at
 from hil.analysis.missing_effects._hypothesis import Hypothesis
+from hil.analysis.missing_effects._lasting import constancy
 from hil.analysis.missing_effects._noise import proven_noise
 from hil.analysis.missing_effects._problem import problem_of
 from hil.analysis.missing_effects._series import series_of

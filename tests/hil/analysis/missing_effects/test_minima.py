@@ -6,7 +6,7 @@ import pytest
 
 from hil.analysis.missing_effects._fit import linearised, point_at
 from hil.analysis.missing_effects._hypothesis import Hypothesis
-from hil.analysis.missing_effects._minima import other_minimum
+from hil.analysis.missing_effects._screen import other_minimum
 from hil.core.model import EffectUse
 from tests.hil.analysis.missing_effects.chain import NUMBERS, chirp_problem
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data.pair import Pair
+from hil.analysis.diagnosis.data.turns import Pair
 
 
 def test_sign_and_factor_of_two_things() -> None:

@@ -3,8 +3,14 @@
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data.pair import Pair
-from hil.analysis.diagnosis.data.turns import around, beyond_drift, drift_degree, pushes_of, refused_push
+from hil.analysis.diagnosis.data.turns import (
+    Pair,
+    around,
+    beyond_drift,
+    drift_degree,
+    pushes_of,
+    refused_push,
+)
 from tests.hil.analysis.diagnosis.one_recording import one_trace
 
 

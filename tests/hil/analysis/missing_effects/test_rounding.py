@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data.grid import grid_step
+from hil.analysis.missing_effects import rounding_step
 
 
 @pytest.mark.parametrize("step", [0.01, 0.25, 3.0])
 def test_the_step_of_a_grid_is_found(step: float) -> None:
     values = np.random.default_rng(1).normal(0.0, 10.0 * step, 4000)
-    assert grid_step(np.round(values / step) * step) == pytest.approx(step, rel=1e-6)
-    assert grid_step(values) == 0.0
+    assert rounding_step(np.round(values / step) * step) == pytest.approx(step, rel=1e-6)
+    assert rounding_step(values) == 0.0
 
 
 def test_a_constant_lies_on_no_grid() -> None:
-    assert grid_step(np.full(1000, 2.0)) == 0.0
+    assert rounding_step(np.full(1000, 2.0)) == 0.0
