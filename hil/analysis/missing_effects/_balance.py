@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._mass import WINDOW_S, Mass, brakes, mass_of
-from hil.analysis.missing_effects._orders import PERIODS, fineness, over_angle, peaks
+from hil.analysis.missing_effects._orders import fineness, is_held, over_angle, peaks
 from hil.analysis.missing_effects._series import Series
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
@@ -113,13 +113,13 @@ def _orders(mass: Mass, hypothesis: Hypothesis) -> list[float]:
     fine = fineness(turns)
     power = np.abs(over_angle(rest, middles, fine, round(_HIGHEST / fine)))
     orders = fine * np.arange(1.0, len(power) + 1.0, dtype=np.float64)
-    power[orders * turns < PERIODS] = 0.0
+    power[~is_held(orders, turns)] = 0.0
     found = []
     for peak in peaks(orders, power, 2 * _PEAKS):
         best = peak
         for step in _STEPS:
-            near = [one for one in best + step * _NEAR / turns if one * turns >= PERIODS]
-            best = float(max(near, key=drop, default=best))
+            near: Array = best + step / turns * _NEAR.astype(np.float64)
+            best = float(max(near[is_held(near, turns)], key=drop, default=best))
         found.append((drop(best), best))
     return [order for _, order in sorted(found, reverse=True)[:_PEAKS]]
 

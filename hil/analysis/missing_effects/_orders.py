@@ -28,6 +28,7 @@ _OF_A_TURN = 0.25  # by which an order may be off over the longest recording: it
 _BINS = 4  # of angle in a period of the highest order
 PERIODS = 2.0
 """Of a ripple that a recording must hold."""
+_ONCE, _HALF_TURN = (0.9, 1.1), 0.5  # order of gravity and imbalance, of which half a period does
 _COUNT = 4
 _SOURCES = {"wheel": "extra_shaft_torque_nm", "rotor": "rotor_loss_nm"}
 
@@ -132,6 +133,12 @@ def turns(problem: Problem, side: Side) -> float:
     """Of wheel or rotor in the longest recording."""
     column = 0 if side == "wheel" else 1
     return max(float(np.ptp(both[:, column])) for both in problem.angles) / (2 * np.pi)
+
+
+def is_held(order: Array, turned: float) -> npt.NDArray[np.bool_]:
+    """Whether a recording of so many turns holds enough of a ripple to tell it from what is slow."""
+    once = (order >= _ONCE[0]) & (order <= _ONCE[1]) & (turned >= _HALF_TURN)
+    return np.asarray((order * turned >= PERIODS) | once)
 
 
 def fineness(turned: float) -> float:

@@ -25,7 +25,7 @@ from hil.analysis.missing_effects._lasting import constancy, held_against_drift
 from hil.analysis.missing_effects._mismatch import as_the_base_has, is_far, mismatches, numbers_of
 from hil.analysis.missing_effects._noise import rounding_step
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains, weights_of
-from hil.analysis.missing_effects._orders import PERIODS, turns
+from hil.analysis.missing_effects._orders import is_held, turns
 from hil.analysis.missing_effects._outcome import Named, Outcome, Replay, Verdict
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._search import HALF, is_loss
@@ -186,7 +186,7 @@ def _is_line(done: Candidates, at: Linearised, index: int) -> bool:
         return True
     whole = turns(done.problem, side)
     sure = at.standard_error(index, "order") * whole < HALF
-    return sure and float(use.values["order"]) * whole >= PERIODS
+    return sure and bool(is_held(np.array(float(use.values["order"])), whole))
 
 
 def _swapped(done: Candidates, best: Candidate, asked: Callable[[EffectUse], bool] = lambda _: True) -> None:

@@ -10,7 +10,7 @@ from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
 from tests.hil.analysis.missing_effects.chain import NUMBERS, chirp
-from tests.hil.analysis.missing_effects.turning_mass import base, recording
+from tests.hil.analysis.missing_effects.turning_mass import arm, base, recording
 
 pytestmark = pytest.mark.slow
 
@@ -42,6 +42,19 @@ def test_gravity_beside_dry_friction_is_a_ripple_once_a_turn() -> None:
     assert names["motor_order_ripple"]["order"] == pytest.approx(1.0, abs=0.01)
     assert names["motor_order_ripple"]["amplitude_nm"] == pytest.approx(4.0, rel=0.01)
     assert names["coulomb_friction"]["torque_nm"] == pytest.approx(0.3, rel=0.05)
+
+
+@pytest.mark.parametrize("model", [base(0.54, 1.0), base(0.27), base(1.62)])
+def test_gravity_of_an_arm_that_turns_less_than_once_is_named_from_its_encoder(model: Model) -> None:
+    """Once a turn is what gravity does: half a period of it does."""
+    found = explain_gap(model, [arm(1)], [arm(2)])
+    names = {one.id: one.use.values for one in found.effects if one.id != "parameter_mismatch"}
+    assert names.keys() == {"coulomb_friction", "motor_order_ripple"}
+    assert names["motor_order_ripple"]["order"] == pytest.approx(1.0, abs=0.02)
+    assert names["motor_order_ripple"]["amplitude_nm"] == pytest.approx(4.0, rel=0.02)
+    assert names["coulomb_friction"]["torque_nm"] == pytest.approx(0.3, rel=0.05)
+    assert found.numbers["motor_inertia"][1] == pytest.approx(0.54, rel=0.01)
+    assert found.numbers["viscous_drag"][1] == pytest.approx(1.0, rel=0.02)
 
 
 def test_a_right_base_has_nothing_missing_and_a_wrong_number_is_named() -> None:

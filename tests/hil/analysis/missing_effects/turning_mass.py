@@ -74,3 +74,37 @@ def base(inertia: float, drag: float = 0.0) -> Model:
         "torque_delay": 0.0,
     }
     return Model("rigid", parameters)
+
+
+def arm(seed: int, *, counts: int = 4096, seconds: float = 20.0) -> Recording:
+    """An arm of 0.54 kg m², 1 N m s/rad, 0.3 N m of dry friction and 4 N m of gravity, led along a path.
+
+    It turns less than once. Its position is read in counts, and a controller acts on them.
+    """
+    rng = np.random.default_rng(seed)
+    time = np.arange(round(seconds / _SAMPLE_S), dtype=np.float64) * _SAMPLE_S
+    path = np.zeros(len(time))
+    for hz in (0.13, 0.31, 0.57, 1.1):
+        path += rng.uniform(0.3, 1.2) * np.sin(2.0 * np.pi * hz * time + rng.uniform(0.0, 6.0))
+    torque, angle = np.empty(len(time)), np.empty(len(time))
+    _lead(path, 2.0 * np.pi / counts, torque, angle)
+    channels = {"time_s": time, "motor_torque_ref_nm": torque, "motor_angle_rad": angle}
+    return Recording(channels, Path(f"arm {seed}.csv"))
+
+
+@njit(cache=True)
+def _lead(path, count, torque, angle):  # type: ignore[no-untyped-def]
+    speed, at, before, h = 0.0, 0.0, 0.0, _SAMPLE_S / _PARTS
+    for k in range(len(path)):
+        read = np.floor(at / count) * count
+        asked = 60.0 * (path[k] - read) - 6.0 * (read - before) / _SAMPLE_S
+        torque[k], angle[k] = min(max(asked, -30.0), 30.0), read
+        before = read
+        for _ in range(_PARTS):
+            drive = torque[k] - speed - 4.0 * np.sin(at)
+            if speed == 0.0 and abs(drive) <= 0.3:
+                continue
+            way = np.sign(speed) if speed != 0.0 else np.sign(drive)
+            new = speed + h * (drive - 0.3 * way) / 0.54
+            speed = 0.0 if speed * new < 0.0 else new
+            at += h * speed
