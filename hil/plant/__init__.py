@@ -7,6 +7,7 @@ from hil.plant._angles import (
     as_read,
     by_angle,
     half_window,
+    rounding_step,
     speed_of,
     turned,
 )
@@ -14,7 +15,7 @@ from hil.plant._batch_simulation import ideal_sensors, simulate_many
 from hil.plant._linear import LinearSystem, linear_system, linear_system_of, system
 from hil.plant._motor_limits import refuse_motor_limits
 from hil.plant._packed_sets import begins_of, turns
-from hil.plant._regulated import followed, given_outputs, turning_of
+from hil.plant._regulated import Turning, followed, given_outputs, turning_of
 from hil.plant._replay import Start, gear_ratio_of, load_of, replay, replayed, simulate
 from hil.plant._stability import LONGEST_STEP_S, is_stable, refuse_diverged_state, refuse_too_stiff
 from hil.plant.sensors import DELAY as SENSOR_DELAY
@@ -36,6 +37,7 @@ __all__ = [
     "TURNED_OVER_S",
     "LinearSystem",
     "Start",
+    "Turning",
     "angle_at",
     "angle_of",
     "as_read",
@@ -59,6 +61,7 @@ __all__ = [
     "refuse_too_stiff",
     "replay",
     "replayed",
+    "rounding_step",
     "sensor_of",
     "sensor_response",
     "simulate",

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.channels import ANGLES, OUTPUTS
+from hil.core.errors import BadInputError
 from hil.core.recording import Recording
 from hil.plant.sensors import mean_around
 
@@ -21,6 +22,8 @@ SPEEDS: Flags = np.zeros(len(OUTPUTS), dtype=bool)
 """Of no output as an angle."""
 TURNED_OVER_S = 0.004
 """Within which an angle is read, or two samples: what an axle's bends in a speed leave alone up to 50 Hz."""
+_ALIKE = 1e-9  # of all that readings span: nearer ones are one level
+_SURE_RAD, _MOSTLY = 0.5 * np.pi, 0.99  # of a wrapped angle's steps so many are at most so large
 
 
 def by_angle(recording: Recording) -> Flags:
@@ -45,10 +48,20 @@ def angle_at(recording: Recording, angle: str, grid: Array) -> Array:
     """A recorded angle in rad at the times of a grid, straight between its readings.
 
     One that begins again with every turn goes on instead.
+
+    Raises:
+        BadInputError: it begins again with every turn, and turns too far between samples to say which way.
     """
     values = recording[angle]
     if np.ptp(values) <= 2.0 * np.pi and np.any(np.abs(np.diff(values)) > np.pi):
         values = np.unwrap(values)
+        if np.quantile(np.abs(np.diff(values)), _MOSTLY) > _SURE_RAD:
+            raise BadInputError(
+                f"'{angle}' begins again with every turn and turns by more than a quarter of one "
+                "between samples: it cannot be known which way",
+                where=str(recording.source),
+                fix="record faster, or give a position that goes on",
+            )
     return np.asarray(np.interp(grid, recording.time_s, values), dtype=float)
 
 
@@ -88,3 +101,22 @@ def turned(samples: Array, dt: float, gear_ratio: float, first_wheel_angle_rad: 
     ways = np.cumsum(0.5 * dt * (speeds[1:] + speeds[:-1]), axis=0)
     first = first_wheel_angle_rad * np.array([1.0, gear_ratio])
     return np.asarray(first + np.concatenate([np.zeros((1, 2)), ways]), dtype=float)
+
+
+def rounding_step(values: Array, *, often: bool = True) -> float:
+    """Distance between the readings that a channel takes, in its unit; 0.0 where they are a continuum.
+
+    Readings lie on a grid where there are far fewer levels than samples and nearly all differences of
+    neighbouring levels are whole multiples of the smallest usual one.
+
+    Args:
+        often: whether each level must be read often; not of an angle that goes on.
+    """
+    levels = np.unique(values)
+    if len(levels) < 3 or (often and 4 * len(levels) > len(values)):
+        return 0.0
+    gaps = np.diff(levels)
+    gaps = gaps[gaps > _ALIKE * (levels[-1] - levels[0])]  # digits of one level
+    step = float(np.median(gaps[gaps <= 1.5 * np.quantile(gaps, 0.1)]))
+    off = np.abs(gaps / step - np.rint(gaps / step))
+    return step if np.mean(off < 0.05) > 0.9 else 0.0

@@ -11,13 +11,16 @@ from hil.analysis.missing_effects._series import Series
 from hil.analysis.missing_effects._spectrum import bands_of, edges_hz
 from hil.analysis.power_density import power_density
 from hil.core.channels import ANGLES, OUTPUTS
-from hil.plant import GEAR_RATIO, followed, half_window, turning_of
+from hil.plant import GEAR_RATIO, followed, half_window, rounding_step
 
 Array = npt.NDArray[np.float64]
 
+SHAFT = OUTPUTS[2]
+
 _TOP = 0.6  # of the band up to half the rate: above it stands no mode of a driveline, only noise
+_TOP_SLOPE = float(2.0 * np.sin(0.25 * np.pi * (1.0 + _TOP)))  # of differences of white noise, over it, there
+_LATE_S = 0.03  # at most is a torque that leaps along
 _WINDOW = 1024  # samples
-_ALIKE = 1e-9  # of all that readings span: nearer ones are one level
 _BINS = 4096  # of a spectrum of noise
 _LEAST_COLOUR = 1e-4  # no encoder's noise is that much less in one octave than in all
 _DIGITS = 1e-5  # of a channel's rms: what no instrument of a bench resolves
@@ -38,6 +41,8 @@ def proven_noise(series: Sequence[Series], stated: Mapping[str, float]) -> Array
             levels[column] = _of_angles(have, column, stated.get(ANGLES[name], 0.0))
             continue
         white = np.median([_white_of_blocks(one, column) for one in have])
+        if name == SHAFT:  # a rigid axle's leaps with the torque, whose steps are no noise
+            white = min(white, np.median([_white_beside_torque(one) for one in have]))
         step = rounding_step(np.concatenate([one.samples[:, column] for one in have]))
         maker = stated.get(name, 0.0) / np.sqrt(have[0].block)
         digits = _DIGITS * np.sqrt(np.mean([np.mean(one.samples[:, column] ** 2) for one in have]))
@@ -49,8 +54,7 @@ def _of_angles(series: Sequence[Series], column: int, stated_rad: float) -> floa
     """Of block means of what an angle turns by, by the white noise of its readings and their rounding."""
     have = [one for one in series if one.of_angle[column]]
     angles = [one.angle[:, column] for one in have]
-    middle = 0.25 * np.pi * (1.0 + _TOP)  # of white noise differences have 4 sin² of its density
-    white = np.median([white_level(np.diff(one)) for one in angles]) / (2.0 * np.sin(middle))
+    white = np.median([white_level(np.diff(one)) for one in angles]) / _TOP_SLOPE
     step = rounding_step(np.concatenate(angles), often=False)
     digits = 1e-15 * max(float(np.max(np.abs(one))) for one in angles)
     of_a_reading = max(float(white), step / np.sqrt(12.0), stated_rad, digits)
@@ -88,7 +92,7 @@ def with_motion(
         2 * one.block * _BINS * one.dt
     )
     mean = np.sin(np.pi * frequency * one.block * one.dt) / (one.block * np.sin(np.pi * frequency * one.dt))
-    turning = turning_of(one.turning(float(slots[GEAR_RATIO])), one.dt).noise_at(frequency)
+    turning = one.turning(float(slots[GEAR_RATIO])).noise_at(frequency)
     square = turning * np.square(followed(slots, frequency) * mean) / one.block
     # of means of blocks what is faster than half their rate looks slow
     folded = np.abs((frequency + 0.5 * one.rate_hz) % one.rate_hz - 0.5 * one.rate_hz)
@@ -112,6 +116,15 @@ def _together(one: Series) -> Array:
     return np.array([float(weights[at:] @ weights[: len(weights) - at]) for at in apart])
 
 
+def _white_beside_torque(one: Series) -> float:
+    """White noise of block means of the shaft torque, without what leaps along with the torque asked for."""
+    leaps, asked = np.diff(one.samples[:, OUTPUTS.index(SHAFT)]), np.diff(one.torque)
+    lags = min(round(_LATE_S / one.dt), len(leaps) // 10)
+    late = np.stack([np.concatenate([np.zeros(k), asked[: len(asked) - k]]) for k in range(lags)], axis=1)
+    rest = leaps - late @ np.linalg.lstsq(late, leaps, rcond=None)[0]
+    return white_level(rest) / _TOP_SLOPE / float(np.sqrt(one.block))
+
+
 def _white_of_blocks(one: Series, column: int) -> float:
     """White noise of block means: by readings; where samples lie between these, by the means."""
     if one.even:
@@ -123,22 +136,3 @@ def white_level(values: Array) -> float:
     """Standard deviation of a sample, by the median density above `_TOP` of the band (lines left out)."""
     frequency, density = power_density(values[:, None], 1.0, min(_WINDOW, len(values)), average="median")
     return float(np.sqrt(0.5 * np.median(density[frequency > 0.5 * _TOP, 0])))
-
-
-def rounding_step(values: Array, *, often: bool = True) -> float:
-    """Distance between the readings that a channel takes, in its unit; 0.0 where they are a continuum.
-
-    Readings lie on a grid where there are far fewer levels than samples and nearly all differences of
-    neighbouring levels are whole multiples of the smallest usual one.
-
-    Args:
-        often: whether each level must be read often; not of an angle that goes on.
-    """
-    levels = np.unique(values)
-    if len(levels) < 3 or (often and 4 * len(levels) > len(values)):
-        return 0.0
-    gaps = np.diff(levels)
-    gaps = gaps[gaps > _ALIKE * (levels[-1] - levels[0])]  # digits of one level
-    step = float(np.median(gaps[gaps <= 1.5 * np.quantile(gaps, 0.1)]))
-    off = np.abs(gaps / step - np.rint(gaps / step))
-    return step if np.mean(off < 0.05) > 0.9 else 0.0

@@ -18,7 +18,17 @@ from hil.core.channels import ANGLES, ANY_OUTPUT, INPUT, OUTPUTS, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
-from hil.plant import angle_at, by_angle, given_outputs, half_window, load_of, speed_of, turned, turning_of
+from hil.plant import (
+    Turning,
+    angle_at,
+    by_angle,
+    given_outputs,
+    half_window,
+    load_of,
+    speed_of,
+    turned,
+    turning_of,
+)
 
 Array = npt.NDArray[np.float64]
 
@@ -99,7 +109,7 @@ class Series:
         """A first guess of motor speed, wheel speed and shaft torque, no motion inside a tyre: (5,)."""
         motor, wheel, shaft = self.samples[:_FIRST_SAMPLES].mean(axis=0)
         if self.given[1]:
-            wheel = turning_of(self.turning(gear_ratio), self.dt).first
+            wheel = self.turning(gear_ratio).first
         if self.given[0]:
             motor = wheel * gear_ratio
         if not np.isfinite(motor):
@@ -108,10 +118,13 @@ class Series:
             wheel = motor / gear_ratio
         return np.asarray(np.nan_to_num(np.array([motor, wheel, shaft, 0.0, 0.0])), dtype=float)
 
-    def turning(self, gear_ratio: float) -> Array:
-        """Recorded speed of the wheels at every sample, by the motor's where it was not recorded itself."""
-        wheel = self.samples[:, 1]
-        return wheel if np.isfinite(wheel[0]) else self.samples[:, 0] / gear_ratio
+    def turning(self, gear_ratio: float) -> Turning:
+        """What the wheels do, by the motor's channel where they have none themselves."""
+        column = 1 if np.isfinite(self.samples[0, 1]) else 0
+        ratio = (gear_ratio, 1.0)[column]
+        if self.of_angle[column]:
+            return turning_of(self.angle[:, column] / ratio, self.dt, 2)
+        return turning_of(self.samples[:, column] / ratio, self.dt)
 
     def angles(self, gear_ratio: float) -> Array:
         """Wheel and rotor angle in rad at every sample (n x 2), integrated from the recorded speeds."""

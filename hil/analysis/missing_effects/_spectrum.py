@@ -199,9 +199,10 @@ class Powers:
         return np.asarray(-(1.0 + (inside - 1.0) * n / p) / (p + d) / inside)
 
     def mean_square(self) -> Array:
-        """Of each channel over what counts, (3,); NaN where nothing does."""
+        """Of each channel over what counts, (3,), as if its noise were white; NaN where nothing does."""
         count = np.sum(self.bins, axis=(0, 2))
-        sums = np.sum(self.bins * self.power, axis=(0, 2))
+        power = self.power if self.colour is None else self.power / self.colour
+        sums = np.sum(self.bins * power, axis=(0, 2))
         return np.where(count > 0.0, sums / np.maximum(count, 1e-300), np.nan)
 
     def _terms(self, noise: Array) -> tuple[Array, Array, Array, Array]:

@@ -23,7 +23,6 @@ from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._lasting import constancy, held_against_drift
 from hil.analysis.missing_effects._mismatch import as_the_base_has, is_far, mismatches, numbers_of
-from hil.analysis.missing_effects._noise import rounding_step
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains, weights_of
 from hil.analysis.missing_effects._orders import is_held, turns
 from hil.analysis.missing_effects._outcome import Named, Outcome, Replay, Verdict
@@ -32,6 +31,7 @@ from hil.analysis.missing_effects._search import HALF, is_loss
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
+from hil.plant import rounding_step
 
 Array = npt.NDArray[np.float64]
 

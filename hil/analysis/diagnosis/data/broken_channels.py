@@ -22,9 +22,9 @@ from hil.analysis.diagnosis.data.thresholds import (
     TORQUE_MOVES,
 )
 from hil.analysis.diagnosis.data.trace import Trace
-from hil.analysis.missing_effects import rounding_step
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
+from hil.plant import rounding_step
 
 Array = npt.NDArray[np.float64]
 

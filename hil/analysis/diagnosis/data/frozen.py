@@ -21,11 +21,10 @@ from hil.analysis.diagnosis.data.thresholds import (
 )
 from hil.analysis.diagnosis.data.trace import Trace
 from hil.analysis.diagnosis.data.turns import around
-from hil.analysis.missing_effects import rounding_step
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
-from hil.plant import gear_ratio_of
+from hil.plant import gear_ratio_of, rounding_step
 
 Array = npt.NDArray[np.float64]
 

@@ -7,11 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.missing_effects._noise import colour_of, proven_noise, rounding_step
+from hil.analysis.missing_effects._noise import colour_of, proven_noise
 from hil.analysis.missing_effects._series import series_of
 from hil.analysis.missing_effects._spectrum import powers_of
 from hil.core.channels import INPUT, MOTOR_ANGLE, TIME
 from hil.core.recording import Recording
+from hil.plant import rounding_step
 from tests.hil.analysis.missing_effects.turning_mass import base, recording
 
 SPEED = "motor_speed_rad_s"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hil.analysis.missing_effects import rounding_step
+from hil.plant import rounding_step
 
 
 @pytest.mark.parametrize("step", [0.01, 0.25, 3.0])
