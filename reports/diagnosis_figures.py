@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 WINDOW_S = 1.5
-_MEASURED = "Measured: what the momentum does not account for, means of a fifth of a second."
+_MEASURED = "Measured: the law with what the momentum does not account for, means of a fifth of a second."
 _RECORDED = "Measured: torque of the shafts as recorded, over the twist of the model."
 
 
@@ -67,7 +67,8 @@ def overlay_figure(overlay: Overlay) -> Figure:
     spread = np.var(overlay.measured[:, has], axis=0) + 1e-12
     changed = np.mean((overlay.after - overlay.before)[:, has] ** 2, axis=0) / spread
     column = int(has[np.argmax(changed)])
-    return replace(_in_time(overlay, column, OUTPUTS[column]), id="before-and-after", wide=False)
+    shown = _in_time(overlay, column, OUTPUTS[column])
+    return replace(shown, id="before-and-after", wide=False, caption=f"In {overlay.name}.")
 
 
 def _change(overlay: Overlay) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from hil.analysis.diagnosis import Diagnosis, NamedEffect
 from hil.core.effects import EFFECTS
+from hil.core.model import parameter_unit
 from reports import labels
 from reports.labels import channel_label, parameter_title, with_titles
 from reports.parts import Table
@@ -41,6 +42,8 @@ def effects_table(found: Diagnosis) -> Table:
     rows = []
     for e in found.effects:
         units = {p.name: p.unit for p in EFFECTS[e.use.id].parameters}
+        if "parameter" in e.use.values:
+            units["value"] = parameter_unit(str(e.use.values["parameter"]))
         for index, (name, value) in enumerate(e.use.values.items()):
             shown = value if isinstance(value, str) else labels.quantity(value, units.get(name, ""))
             error = e.standard_error.get(name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hil.analysis.diagnosis import Alternative, Diagnosis
+from hil.analysis.diagnosis import NO_TEST, Alternative, Diagnosis
 from hil.core.effects import EFFECTS
 from reports.diagnosis_names import names_of
 from reports.labels import channel_label
@@ -14,6 +14,7 @@ _RECORD = "chirps at two amplitudes, steps, torque reversals, a coast-down"
 _HOLD = "hil diagnose … --holdout RECORDING"
 _CHAIN = "hil run identification, then hil identify on its recording writes physical.toml"
 _OWN = "write it as an effect of your own (docs/how-to/own-effect.md)"
+_REPLAY = "hil simulate --model model.toml: it does not hold the vehicle, which a plan needs"
 _USE = "hil tune PLAN --model model.toml; hil simulate; hil run --model model.toml"
 
 
@@ -38,37 +39,36 @@ def _steps(found: Diagnosis) -> Iterator[tuple[str, str]]:
             _HOLD,
         )
     if not found.holdout_after:
-        yield (
-            "Hold a recording back: these gaps are of data that were fitted",
-            _HOLD,
-        )
+        yield "Hold a recording back: these gaps are of data that were fitted", _HOLD
     if found.verdict != "unknown":
-        yield (
-            "Go on with the new model",
-            "hil tune PLAN --model model.toml, hil simulate, hil run --model model.toml",
-        )
+        yield "Go on with the new model", _REPLAY if found.model.load_input else _USE
 
 
 def _unknown(found: Diagnosis) -> Iterator[tuple[str, str]]:
     if found.base.transfer_functions:
-        yield (
-            "Get the chain: nothing can be added inside transfer functions",
-            "hil run identification, hil identify",
-        )
+        yield "Get the chain: nothing can be added inside transfer functions", _CHAIN
     elif found.curves:
-        yield (
-            f"Look at the torque that stays: it follows {found.curves[0].over}",
-            "an effect of your own (docs/how-to/own-effect.md)",
-        )
+        yield f"Look at the torque that stays: it follows {found.curves[0].over}", _OWN
     else:
         yield "Look where the gap is, and record what excites it there", _RECORD
 
 
 def _apart(found: Diagnosis, one: Alternative) -> Iterator[tuple[str, str]]:
-    """How a rival is told from the name that stands above it."""
-    if not (found.effects and (one.plan or found.class_of(one))):
-        return
+    """How a rival is told from the name that it could stand for."""
     title = EFFECTS[one.use.id].title.lower()
-    first = names_of(found.effects[0]).partition(" or ")[0]
-    how = f"hil run {one.plan}, then diagnose again with its recording" if one.plan else one.separating_test
-    yield f"Tell {first} from {title}", how
+    label = EFFECTS[one.use.id].label(one.use.values)
+    for effect in found.effects or (None,):
+        alike = effect is not None and label in effect.alike
+        if not (alike or (one.plan and effect in (None, *found.effects[:1]))):
+            continue
+        how = (
+            one.separating_test
+            if not one.separating_test.startswith(NO_TEST)
+            else EFFECTS[one.use.id].shown_by
+        )
+        if one.plan:
+            how = f"hil run {one.plan}, then diagnose again with its recording"
+        if effect is None:
+            yield f"Find out whether it is {title}", how
+        else:
+            yield f"Tell {names_of(effect).partition(' or ')[0]} from {title}", how

@@ -61,6 +61,25 @@ def unbroken(recording: Recording, load: str = "") -> list[Recording]:
     return pieces
 
 
+def without(recording: Recording, left_out: npt.NDArray[np.bool_], least_s: float) -> list[Recording]:
+    """The stretches between runs of samples that are left out, of those that last so long at least.
+
+    The whole where none is long enough.
+    """
+    edges = np.flatnonzero(np.diff(np.concatenate([[True], left_out, [True]]))).reshape(-1, 2).tolist()
+    dt = recording.sample_time_s
+    kept: list[list[int]] = []
+    for first, last in edges:
+        if kept and (first - kept[-1][1]) * dt < least_s:
+            kept[-1][1] = last
+        else:
+            kept.append([first, last])
+    long = [(a, b) for a, b in kept if b - a >= LEAST_SAMPLES and (b - a) * dt >= LEAST_DURATION_S]
+    if not long or long == [(0, recording.samples)]:
+        return [recording]
+    return [_piece(recording, first, last) for first, last in long]
+
+
 @dataclass(frozen=True)
 class _Gap:
     """A pause between two samples, or samples that lack a channel: `begins` to `after` are left out."""

@@ -60,7 +60,7 @@ class Axle:
         wheel_radius_m: float = 0.33,
         initial_speed_m_s: float = 0.0,
     ) -> None:
-        refuse_without_vehicle(model, "model", "be a unit")
+        refuse_without_vehicle(model, "model", "make the unit")
         self._loop = ClosedLoop(model, wheel_radius_m, Wire({}, _EXACT, _EXACT, _EXACT))
         self._mode = M.TORQUE if controller is None else M.DRIVING_FORCE
         if controller is not None:

@@ -26,6 +26,7 @@ Array = npt.NDArray[np.float64]
 
 _TOP = 0.6  # of the band up to half the rate: above it a speed is noise alone
 _MEDIAN = 0.4549  # of the power of a bin over its mean: turned over, a bin has one part (chi-square of one)
+_QUIET, _NOISES = 1e-3, 3.0  # of the largest speed, standard deviations: slower wheels may stand
 _LEAST, _END_S = 20, 0.1  # samples, or seconds, by which an end's bend is read
 _CLEAR = 10.0  # times the noise: steps of an encoder fill an octave with some times their mean
 _LOWEST_HZ = 0.5  # upper edge of the first octave
@@ -100,6 +101,16 @@ def _bent_ends(readings: Array, dt: float) -> Polynomial:
     begins = Polynomial([0.0, 0.0, 0.5]) * Polynomial([1.0, -1.0 / lasts]) ** 3
     ends = begins(Polynomial([lasts, -1.0]))
     return float(first) * begins + float(last) * ends
+
+
+def stands(model: Model, recording: Recording) -> Flags:
+    """Whether the wheels stand, or may, at each time stamp: what holds them then is not known."""
+    readings, order = wheel_readings(model, recording)
+    dt = recording.sample_time_s
+    found = turning_of(readings, dt, order)
+    speed = found.first + np.concatenate([[0.0], np.cumsum(0.5 * dt * (found.slope[1:] + found.slope[:-1]))])
+    unsure = np.sqrt(np.mean(found.noise_at(np.linspace(0.0, 0.5 / dt, 1000))))
+    return np.asarray(np.abs(speed) <= max(_QUIET * float(np.max(np.abs(speed))), _NOISES * float(unsure)))
 
 
 def turning_load(model: Model, recording: Recording) -> Array:

@@ -100,7 +100,7 @@ def test_the_page_says_what_was_found_and_links_to_every_section(found: Diagnosi
     assert links == [part.id for part in parts(found)]
     assert all(page.get_element_by_id(link).tag == "section" for link in links)
     assert len(page.xpath("//figure/img[starts-with(@src, 'data:image/svg+xml') and @alt]")) == 1
-    assert len(page.xpath("//figure/div[@class='plot' and @aria-label]")) == 6
+    assert len(page.xpath("//figure/div[@class='plot' and @aria-label]")) == 7
     assert not page.xpath("//script[@src] | //link")
 
 
@@ -228,6 +228,11 @@ def test_what_stays_without_a_name_is_drawn_without_a_law(found: Diagnosis) -> N
         ({"open_channels": (SHAFT,)}, ("Record more: more than noise stays in shaft torque", "coast-down")),
         ({"held_out_open": (SHAFT,)}, ("Give the held-out recordings as recordings too", "--holdout")),
         ({"unfinished": "interrupted"}, ("Let the search end", "--at-most MINUTES")),
+        ({"verdict": "unknown", "effects": ()}, ("Find out whether it is channel skew", "hil run separate")),
+        (
+            {"model": dataclasses.replace(MODEL, load_input="wheel_speed_rad_s")},
+            ("Go on", "hil simulate --model"),
+        ),
         ({"verdict": "unknown", "effects": ()}, ("Look where the gap is", "chirps at two amplitudes")),
     ],
 )

@@ -11,6 +11,7 @@ from hil.analysis.diagnosis.findings.result import (
     NamedEffect,
     Overlay,
 )
+from hil.analysis.diagnosis.findings.separating import NO_TEST
 from hil.analysis.diagnosis.findings.words import Where
 from hil.analysis.missing_effects import INTERRUPTED, Curve
 
@@ -19,6 +20,7 @@ __all__ = [
     "CONDITIONS",
     "INTERRUPTED",
     "LEAST_SAMPLES",
+    "NO_TEST",
     "Alternative",
     "ChannelGap",
     "Curve",

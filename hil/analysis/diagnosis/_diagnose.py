@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from hil.analysis.diagnosis.asked import Asked
 from hil.analysis.diagnosis.data.noise import stated_noise
@@ -57,10 +58,11 @@ def diagnose(
     asked = Asked.checked({**stated_noise([*recordings, *holdout]), **(noise or {})}, least or {}, at_most_s)
     with within_floating_point(", ".join(str(r.source) for r in recordings)):
         show("reading the recordings")
-        seen = examined(model, recordings)
-        examined(model, holdout, seen.traces)
+        with _by_recorded_names([*recordings, *holdout]):
+            seen = examined(model, recordings)
+            examined(model, holdout, seen.traces)
         fitted, unseen = ([with_outputs_of(model, one) for one in some] for some in (recordings, holdout))
-        notes = [f"{t.name}: {n}" for t in seen.traces for n in t.notes] + seen.notes
+        notes = _together([(t.name, n) for t in seen.traces for n in t.notes]) + seen.notes
         found = explain_gap(model, fitted, unseen, noise=asked.noise, at_most_s=asked.at_most_s, show=show)
         return diagnosis_of(found, model, asked, notes)
 
@@ -76,3 +78,27 @@ def _refuse_mixed(recordings: Sequence[Recording]) -> None:
                 where=turning[0],
                 fix="give the same of the two in every recording; the angle, where the speed was made of it",
             )
+
+
+def _together(notes: Sequence[tuple[str, str]]) -> list[str]:
+    """Notes on recordings, each once, with the names of those that it is about."""
+    about: dict[str, list[str]] = {}
+    for name, note in notes:
+        about.setdefault(note, []).append(name)
+    return [f"{', '.join(dict.fromkeys(names))}: {note}" for note, names in about.items()]
+
+
+@contextlib.contextmanager
+def _by_recorded_names(recordings: Sequence[Recording]) -> Iterator[None]:
+    """Refusals name the angle that was recorded, not the speed that was read from it."""
+    try:
+        yield
+    except BadInputError as error:
+        what = error.what
+        for speed, angle in ANGLES.items():
+            if any(angle in one and speed not in one for one in recordings):
+                what = what.replace(speed, angle)
+        if what == error.what:
+            raise
+        fix = f"{error.fix}; or is the angle in degrees, or in counts?" if error.fix else ""
+        raise BadInputError(what, where=error.where, fix=fix) from error

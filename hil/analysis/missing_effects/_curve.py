@@ -1,6 +1,7 @@
 """A missing torque as a picture: what a balance measures of it, over what it follows, beside its law.
 
-What the momentum of a body does not account for is a torque. On the rotor it is T - T_s/n - J·ω', on a load
+What the momentum of a body does not account for is a torque; with its law it stands beside the law (a partial
+residual). On the rotor it is T - T_s/n - J·ω', on a load
 behind the shafts T_s - J·ω', on a rigid axle both at once; nothing is differentiated (`_mass`). A law of the
 shafts stands beside their recorded torque, over the twist of the model. Other losses are taken out.
 """
@@ -116,7 +117,7 @@ def _body(hypothesis: Hypothesis, replay: Replay, *, on_load: bool) -> _Body | N
 
 
 def _seen(hypothesis: Hypothesis, use: EffectUse, body: _Body) -> tuple[Array, Array, Array]:
-    """Torque of a law, what is measured in its place, and what it follows: means of windows each."""
+    """Torque of a law, the same with what the momentum leaves, and what it follows, by blocks."""
     one, chain = body.one, hypothesis.chain()
     angle = one.first_wheel_angle_rad * chain.gear_ratio + np.cumsum(np.nan_to_num(body.rotor)) / one.rate_hz
     rotor = np.nan_to_num(body.rotor)
@@ -136,10 +137,11 @@ def _seen(hypothesis: Hypothesis, use: EffectUse, body: _Body) -> tuple[Array, A
     beside = sum((torque(other) for other in hypothesis.terms if other is not use), np.zeros(len(angle)))
     if not body.on_load:
         beside = beside + (chain.viscous_drag - drag) * body.speed
-    measured = impulses(one, body.driving - beside) - body.inertia * changes(one, body.speed)
+    stays = impulses(one, body.driving - beside - law) - body.inertia * changes(one, body.speed)
+    middles = impulses(one, np.arange(len(law), dtype=np.float64)) / WINDOW_S
+    measured = law + np.interp(np.arange(len(law)), middles, stays / WINDOW_S)
     order = float(use.values.get("order", 0.0))
-    over = impulses(one, angle if order else body.speed) / WINDOW_S
-    return impulses(one, law) / WINDOW_S, measured / WINDOW_S, over % (2.0 * np.pi / order) if order else over
+    return law, measured, angle % (2.0 * np.pi / order) if order else body.speed
 
 
 def _drag(hypothesis: Hypothesis, use: EffectUse) -> float:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from hil.analysis.frequency_response import period_samples
 from hil.analysis.missing_effects._spectrum import edges_hz, powers_of
 from hil.analysis.spikes import without_spikes
-from hil.analysis.stretches import excerpts, unbroken
+from hil.analysis.stretches import excerpts, unbroken, without
 from hil.core.channels import ANGLES, ANY_OUTPUT, INPUT, OUTPUTS, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.model import Model
@@ -24,8 +24,10 @@ from hil.plant import (
     by_angle,
     given_outputs,
     half_window,
+    is_regulated,
     load_of,
     speed_of,
+    stands,
     turned,
     turning_of,
 )
@@ -37,6 +39,7 @@ FIT_RATE_HZ = 250.0
 _EVEN_SHARE = 0.05  # of a sample, by which stamps may be off their grid and still be taken as they are
 _USUAL = 0.95  # of the steps between uneven stamps are at most as long as a block
 _EXCITED = 1e-2  # of the octave that a periodic torque excites most, for an octave that it excites at all
+_RESTS_S = 0.1  # at least is a rest; a speed that passes zero is none
 _FIRST_SAMPLES = 5  # whose mean is the first guess of where a recording begins
 
 
@@ -141,12 +144,25 @@ def series_of(model: Model, recordings: Sequence[Recording]) -> list[Series]:
     found = []
     for recording in recordings:
         for part in unbroken(recording, model.load_input):
-            found += [_series(model, piece) for piece in excerpts(part)]
+            found += [_series(model, piece) for whole in excerpts(part) for piece in _moving(model, whole)]
+    if is_regulated(model) and not any(one.has.any() for one in found):
+        raise BadInputError(
+            "the recordings have nothing beside the speed that the wheels are held at",
+            where=", ".join(str(one.source) for one in recordings),
+            fix="record the shaft torque, or of an axle with shafts the motor's speed",
+        )
     if not any(one.has.any() for one in found):
         raise BadInputError(
             f"the recordings have none of {', '.join(ANY_OUTPUT)}", fix="record at least a speed"
         )
     return found
+
+
+def _moving(model: Model, recording: Recording) -> list[Recording]:
+    """Where a motor on a flange turns: held at rest, its friction may be anything up to what holds it."""
+    if not (is_regulated(model) and model.kind == "rigid"):
+        return [recording]
+    return without(recording, stands(model, recording), _RESTS_S)
 
 
 def _series(model: Model, recording: Recording) -> Series:

@@ -9,6 +9,7 @@ import pytest
 
 from hil.core.channels import INPUT, MOTOR_ANGLE, TIME, WHEEL_ANGLE
 from hil.core.effects import EFFECTS
+from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
 from hil.plant import (
@@ -126,3 +127,13 @@ def test_a_replay_gives_the_angle_from_its_first_reading() -> None:
     recording = Recording({TIME: time, INPUT: np.full(1000, 2.0), MOTOR_ANGLE: angle}, Path("r.csv"))
     shown = replay(Model("rigid", numbers), recording)
     assert shown[MOTOR_ANGLE] == pytest.approx(angle, abs=2e-4)
+
+
+def test_a_wrapped_angle_that_turns_too_far_between_samples_is_refused() -> None:
+    time = np.arange(500, dtype=np.float64) * 4e-3
+    channels = {TIME: time, INPUT: time, MOTOR_ANGLE: (1000.0 * time) % (2.0 * np.pi)}
+    recording = Recording(channels, Path("fast.csv"))
+    with pytest.raises(BadInputError, match="which way"):
+        angle_at(recording, MOTOR_ANGLE, time)
+    recording.channels[MOTOR_ANGLE] = 1000.0 * time
+    assert angle_at(recording, MOTOR_ANGLE, time)[-1] == 1000.0 * time[-1]

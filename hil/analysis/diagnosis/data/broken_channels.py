@@ -42,8 +42,9 @@ def refuse_broken_channels(traces: list[Trace], noise: Array, beside: Sequence[T
     for trace in traces:
         for column in np.flatnonzero(trace.has).tolist():
             _dead(trace, column, [*traces, *beside])
-            _clipped(trace, column, float(noise[column]))
-            _frozen(trace, column)
+            if not trace.of_angle[column]:  # an encoder that stands still reads the same count
+                _clipped(trace, column, float(noise[column]))
+                _frozen(trace, column)
     moved = [_moved(trace, noise) for trace in traces]
     for trace, moves in zip(traces, moved, strict=True):
         if float(np.ptp(trace.torque)) == 0.0 and moves and not _slows_down(trace, noise):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -38,7 +38,7 @@ class Trace:
     `block` samples; `samples` is the same at full rate; `start` is motor speed, wheel speed (rad/s) and
     shaft torque (N m) at first, means of `start_samples`, NaN where not measured. `source` is the file, for
     messages. `load` is the torque in N m that brakes the wheels at every sample; None where the model takes
-    none.
+    none. `of_angle` (3,) are speeds read from an angle.
     """
 
     name: str
@@ -53,6 +53,7 @@ class Trace:
     source: str = ""
     load: Array | None = None
     start_samples: int = START_SAMPLES
+    of_angle: Flags = field(default_factory=lambda: np.zeros(3, dtype=bool))
 
     def angles(self, gear_ratio: float, sensors: Array | None = None) -> Array:
         """Wheel and rotor angle in rad at every sample, n x 2, integrated from the measured speeds.
@@ -136,6 +137,7 @@ def trace_of(recording: Recording, name: str = "", load: Array | None = None) ->
         where,
         load=None if load is None else np.where(missing, np.interp(grid, time, load), load[nearest]),
         start_samples=first,
+        of_angle=by_angle(recording),
     )
 
 

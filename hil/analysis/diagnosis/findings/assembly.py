@@ -201,9 +201,10 @@ def _named(found: Outcome, one: Named, shown: _Shown) -> NamedEffect:
     """With the place where the simulations without an effect and with it differ most."""
     without = _without(found.model, one.use)
     if without is None:  # a rounding, or a number of the base
-        channel = str(one.use.values.get("channel", OUTPUTS[0]))
+        recorded = [name for name, has in zip(OUTPUTS, shown.traces[0].has, strict=True) if has]
+        channels = (str(one.use.values["channel"]),) if "channel" in one.use.values else tuple(recorded)
         band = (0.0, round(0.5 / shown.traces[0].dt, 1))
-        place = Where((channel,), band, "at all operating conditions")
+        place = Where(channels, band, "at all operating conditions")
     else:
         samples = _outputs(shown.replays, without)
         place = where_changed(

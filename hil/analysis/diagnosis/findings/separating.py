@@ -61,6 +61,10 @@ class _Test:
     speed: float
 
 
+NO_TEST = "no test is predicted"
+"""So begins what is said in place of one."""
+
+
 def separating_plan(
     one: Model,
     other: Model,
@@ -85,7 +89,7 @@ def separating_plan(
         recordings and so cannot predict one; the text says so.
     """
     if one.load_input:
-        return f"no test is predicted: the models do not hold what makes {one.load_input}", ""
+        return f"{NO_TEST}: the models do not hold what makes {one.load_input}", ""
     ratio = gear_ratio_of(one) or 1.0
     most_shaft = SHAFT_SHARE * ratio * torque_nm if shaft_torque_nm is None else shaft_torque_nm
     candidates = []

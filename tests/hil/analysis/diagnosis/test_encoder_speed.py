@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from hil.analysis.diagnosis import diagnose
+from hil.analysis.diagnosis import diagnose, examine
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
@@ -105,3 +105,13 @@ def test_a_speed_here_and_an_angle_there_are_refused() -> None:
     with pytest.raises(BadInputError, match="has motor_angle_rad and no motor_speed_rad_s") as caught:
         diagnose(MODEL, both[:1], both[1:])
     assert "give the same of the two" in caught.value.fix
+
+
+def test_an_encoder_that_stands_still_is_not_frozen_and_refusals_name_the_angle() -> None:
+    one = by_counts(recording(4.0))
+    uneven = one.time_s + np.random.default_rng(0).uniform(-3e-4, 3e-4, one.samples)
+    assert len(examine(MODEL, [Recording({**one.channels, "time_s": uneven}, one.source)])[0]) == 1
+    degrees = Recording({**one.channels, "motor_angle_rad": np.degrees(one["motor_angle_rad"])}, one.source)
+    with pytest.raises(BadInputError, match="motor_angle_rad changes") as caught:
+        diagnose(MODEL, [degrees])
+    assert "in degrees, or in counts" in caught.value.fix

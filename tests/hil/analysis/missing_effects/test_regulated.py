@@ -6,6 +6,7 @@ Both plants are formulas of this file.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -23,13 +24,21 @@ DT = 1e-3
 LOAD = "wheel_speed_rad_s"
 
 
-def motor(seconds: float, seed: int, *, dry: float = 0.0, ripple: float = 0.0) -> Recording:
+def motor(
+    seconds: float, seed: int, *, dry: float = 0.0, ripple: float = 0.0, counts: int = 0, rests: bool = False
+) -> Recording:
     """A motor of 0.02 kg m² and 0.01 N m s/rad on a torque flange; a machine holds its speed."""
     rng = np.random.default_rng(seed)
     time = np.arange(round(seconds / DT), dtype=np.float64) * DT
     speed = 60 * np.sin(0.8 * time + seed) + 20 * np.sin(3.1 * time) + 5 * np.sin(11 * time)
     slope = 48 * np.cos(0.8 * time + seed) + 62 * np.cos(3.1 * time) + 55 * np.cos(11 * time)
     angle = -75 * np.cos(0.8 * time + seed) - 20 / 3.1 * np.cos(3.1 * time) - 5 / 11 * np.cos(11 * time)
+    if rests:  # at first, for a second and a half, brought to where it goes on within a half
+        rise = np.clip((time - 1.5) / 0.5, 0.0, 1.0)
+        rate = np.where((rise > 0.0) & (rise < 1.0), 2.0, 0.0)
+        smooth, bend = rise**2 * (3.0 - 2.0 * rise), 6.0 * rise * (1.0 - rise) * rate
+        speed, slope = speed * smooth, slope * smooth + speed * bend
+        angle = np.concatenate([[0.0], np.cumsum(0.5 * DT * (speed[1:] + speed[:-1]))])
     torque = 8 * np.sign(np.sin(0.37 * time + seed)) + 3 * np.sin(2 * time) + 2 * np.sin(9 * time)
     acts = np.concatenate([torque[:1], torque[:-1]])
     flange = acts - 0.02 * slope - 0.01 * speed - dry * np.sign(speed) + ripple * np.sin(6 * angle + 0.3)
@@ -40,6 +49,10 @@ def motor(seconds: float, seed: int, *, dry: float = 0.0, ripple: float = 0.0) -
         "shaft_torque_nm": flange + rng.normal(0.0, 0.05, len(time)),
         "wheel_angle_rad": angle,
     }
+    if counts:
+        step = 2 * np.pi / counts
+        channels = {name: channels[name] for name in ("time_s", "motor_torque_ref_nm", "shaft_torque_nm")}
+        channels["motor_angle_rad"] = np.floor(angle / step) * step
     return Recording(channels, Path(f"motor {seed}.csv"))
 
 
@@ -82,6 +95,18 @@ def test_friction_and_ripple_of_a_motor_are_found_by_its_flange() -> None:
     assert found.model.load_input == LOAD
     assert {*found.holdout_after} == {"shaft_torque_nm"}
     assert found.holdout_after["shaft_torque_nm"].noises < 1.1
+
+
+@pytest.mark.parametrize("given", [{"rests": True}, {"counts": 4096}])
+def test_a_rest_or_the_steps_of_an_encoder_take_nothing_from_friction(given: dict[str, Any]) -> None:
+    """Held at rest friction may be anything; steps differentiated twice would be most of the torque."""
+    numbers = {"motor_inertia": 0.018, "gear_ratio": 1.0, "vehicle_inertia": 0.02, "viscous_drag": 0.01}
+    base = Model("rigid", numbers | {"torque_delay": 0.0}, load_input=LOAD)
+    found = diagnose(base, [motor(20.0, 1, dry=0.5, **given)], [motor(10.0, 2, dry=0.5, **given)])
+    assert [one.use.id for one in found.effects] == ["coulomb_friction"]
+    assert found.effects[0].use.values["torque_nm"] == pytest.approx(0.5, rel=0.01)
+    assert found.effects[0].confidence > 0.95
+    assert found.holdout_after["shaft_torque_nm"].noises < 1.15
 
 
 def test_nothing_is_missing_of_a_motor_without_either() -> None:

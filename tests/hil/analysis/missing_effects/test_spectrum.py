@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hil.analysis.missing_effects._spectrum import Powers, of_noise, powers_of
+from hil.analysis.missing_effects._spectrum import Powers, edges_hz, of_noise, powers_of
 
 RATE_HZ = 250.0
 
@@ -133,3 +133,13 @@ def test_what_a_repeated_torque_shows_again_counts_once() -> None:
     ]
     assert gains[1] == pytest.approx(gains[0] / (0.5 * windows), rel=0.05)
     assert once[0].values(near) == pytest.approx(each[0].values(near), rel=0.05)
+
+
+def test_a_misfit_where_coloured_noise_is_small_is_no_noise() -> None:
+    """An angle's noise is small where it is slow: a sum over all octaves would not see what stands there."""
+    time = np.arange(8000) / RATE_HZ
+    slow = np.column_stack([0.3 * np.sin(2.0 * np.pi * 1.5 * time)] * 3)
+    colour = np.ones((3, len(edges_hz(RATE_HZ)) - 1))
+    plain = powers_of([slow], RATE_HZ, np.ones(3), colour=colour).mean_square()
+    colour[:, :4] = 1e-3
+    assert np.all(powers_of([slow], RATE_HZ, np.ones(3), colour=colour).mean_square() > 500.0 * plain)
