@@ -58,8 +58,10 @@ class _Walk:
         self.basis = problem.start_basis(index, point.hypothesis, point.starts[index])[2]
 
     def followed(self, uses: Sequence[EffectUse], begins: Sequence[Array]) -> Array:
-        """The likeliest angles, n x 2, from the likelier of two to begin with."""
-        angles = min(begins, key=lambda some: _half_square(self._left(some)))
+        """The likeliest angles, n x 2, from the first of two to begin with unless the other is likelier."""
+        first, other = begins
+        likelier = _half_square(self._left(other)) < _half_square(self._left(first)) - _SETTLED
+        angles = other if likelier else first
         for use in uses:
             angles = self._followed_by(use, angles)
         return angles

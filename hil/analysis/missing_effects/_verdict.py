@@ -251,9 +251,9 @@ def _named(
     label = best.names[index]
     alike = rivals.get(label, ())
     held = _held(label, candidates, weights, *alike)
-    law = 0.0 if _is_linear(use) else _LAW  # nor are its numbers known better
+    law = 0.0 if _is_linear(use) else _LAW  # nor are its numbers known better, but an order, which is counted
     errors = {
-        name: float(np.hypot(error, law * float(value)))
+        name: float(np.hypot(error, (0.0 if name == "order" else law) * float(value)))
         for name, value in use.values.items()
         if np.isfinite(error := at.standard_error(index, name))
     }

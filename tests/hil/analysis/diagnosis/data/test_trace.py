@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from hil.analysis.diagnosis.data.thresholds import FIT_RATE_HZ
 from hil.analysis.diagnosis.data.trace import blocks, trace_of
 from hil.core.errors import BadInputError
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_trace, recorded
@@ -12,7 +13,7 @@ from tests.hil.analysis.diagnosis.one_recording import MODEL, one_trace, recorde
 
 def test_blocks_are_means_at_the_rate_of_fits() -> None:
     trace = one_trace()
-    assert trace.dt * trace.block == pytest.approx(0.004)
+    assert trace.dt * trace.block == pytest.approx(1.0 / FIT_RATE_HZ)
     assert trace.measured[3] == pytest.approx(trace.samples[12:16].mean(axis=0))
 
 
