@@ -1,9 +1,9 @@
 """A missing torque as a picture: what a balance measures of it, over what it follows, beside its law.
 
-What the momentum of a body does not account for is a torque; with its law it stands beside the law (a partial
-residual). On the rotor it is T - T_s/n - J·ω', on a load
-behind the shafts T_s - J·ω', on a rigid axle both at once; nothing is differentiated (`_mass`). A law of the
-shafts stands beside their recorded torque, over the twist of the model. Other losses are taken out.
+What the momentum of a body does not account for is a torque; with its law it stands beside the law (a
+partial residual). On the rotor it is T - T_s/n - J·ω', on a load behind the shafts T_s - J·ω', on a rigid
+axle both at once; nothing is differentiated (`_mass`). A law of the shafts stands beside their recorded
+torque, over the twist of the model. Other losses are taken out.
 """
 
 from __future__ import annotations

@@ -19,7 +19,8 @@ SHAFT = OUTPUTS[2]
 
 _TOP = 0.6  # of the band up to half the rate: above it stands no mode of a driveline, only noise
 _TOP_SLOPE = float(2.0 * np.sin(0.25 * np.pi * (1.0 + _TOP)))  # of differences of white noise, over it, there
-_LATE_S = 0.03  # at most is a torque that leaps along
+_LATE_S, _MOST_LAGS = 0.03, 60  # at most is a torque that leaps along; samples
+_SOME = 40_000  # samples
 _WINDOW = 1024  # samples
 _BINS = 4096  # of a spectrum of noise
 _LEAST_COLOUR = 1e-4  # no encoder's noise is that much less in one octave than in all
@@ -118,10 +119,11 @@ def _together(one: Series) -> Array:
 
 def _white_beside_torque(one: Series) -> float:
     """White noise of block means of the shaft torque, without what leaps along with the torque asked for."""
-    leaps, asked = np.diff(one.samples[:, OUTPUTS.index(SHAFT)]), np.diff(one.torque)
-    lags = min(round(_LATE_S / one.dt), len(leaps) // 10)
+    some = slice(_SOME)  # of a long recording as many as tell it
+    leaps, asked = np.diff(one.samples[some, OUTPUTS.index(SHAFT)]), np.diff(one.torque[some])
+    lags = min(round(_LATE_S / one.dt), _MOST_LAGS, len(leaps) // 10)
     late = np.stack([np.concatenate([np.zeros(k), asked[: len(asked) - k]]) for k in range(lags)], axis=1)
-    rest = leaps - late @ np.linalg.lstsq(late, leaps, rcond=None)[0]
+    rest = leaps - late @ np.linalg.lstsq(late.T @ late, late.T @ leaps, rcond=None)[0]
     return white_level(rest) / _TOP_SLOPE / float(np.sqrt(one.block))
 
 
