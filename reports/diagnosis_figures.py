@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
 from hil.analysis.diagnosis import Curve, Diagnosis, Overlay
 from hil.analysis.power_density import power_density
@@ -22,6 +23,8 @@ from reports.svg_figure import svg_canvas
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+Array = npt.NDArray[np.float64]
 
 WINDOW_S = 1.5
 _MEASURED = "Measured: the law with what the momentum does not account for, means of a fifth of a second."
@@ -63,19 +66,21 @@ def _curve_figure(number: int, curve: Curve) -> Figure:
 
 def overlay_figure(overlay: Overlay) -> Figure:
     """Measured and simulated of the channel that the new model changes most, narrow."""
-    has = np.flatnonzero(np.isfinite(overlay.measured[0]))
-    spread = np.var(overlay.measured[:, has], axis=0) + 1e-12
-    changed = np.mean((overlay.after - overlay.before)[:, has] ** 2, axis=0) / spread
-    column = int(has[np.argmax(changed)])
+    column = int(np.argmax(_changes(overlay)))
     shown = _in_time(overlay, column, OUTPUTS[column])
     return replace(shown, id="before-and-after", wide=False, caption=f"In {overlay.name}.")
 
 
 def _change(overlay: Overlay) -> float:
-    """Mean square of what the new model changes, over the spread of the channel that it changes most."""
+    """What the new model changes of the channel that it changes most."""
+    return float(np.max(_changes(overlay), initial=0.0))
+
+
+def _changes(overlay: Overlay) -> Array:
+    """Mean square of what the new model changes of each channel, over its spread; 0 if not measured."""
     has = np.isfinite(overlay.measured[0])
-    change = np.mean((overlay.after - overlay.before)[:, has] ** 2, axis=0)
-    return float(np.max(change / (np.var(overlay.measured[:, has], axis=0) + 1e-12), initial=0.0))
+    change = np.mean((overlay.after - overlay.before) ** 2, axis=0)
+    return np.where(has, change / (np.var(overlay.measured, axis=0) + 1e-12), 0.0)
 
 
 def _worst(o: Overlay, column: int) -> slice:

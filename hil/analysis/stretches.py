@@ -61,15 +61,19 @@ def unbroken(recording: Recording, load: str = "") -> list[Recording]:
     return pieces
 
 
+def runs(flags: npt.NDArray[np.bool_]) -> npt.NDArray[np.intp]:
+    """Where runs of true begin, and where they have ended: runs x 2."""
+    return np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]))).reshape(-1, 2)
+
+
 def without(recording: Recording, left_out: npt.NDArray[np.bool_], least_s: float) -> list[Recording]:
     """The stretches between runs of samples that are left out, of those that last so long at least.
 
     The whole where none is long enough.
     """
-    edges = np.flatnonzero(np.diff(np.concatenate([[True], left_out, [True]]))).reshape(-1, 2).tolist()
     dt = recording.sample_time_s
     kept: list[list[int]] = []
-    for first, last in edges:
+    for first, last in runs(~left_out).tolist():
         if kept and (first - kept[-1][1]) * dt < least_s:
             kept[-1][1] = last
         else:
@@ -103,9 +107,9 @@ def _holes(recording: Recording, counting: set[str]) -> list[_Gap]:
         for run in np.split(at, np.flatnonzero(np.diff(at) > 1) + 1):
             if len(run) > GAP_SAMPLES:
                 missing[run] = True
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], missing, [False]]))).reshape(-1, 2).tolist()
     dt = recording.sample_time_s
-    return [_Gap(recording.time_at(begins), (after - begins) * dt, begins, after) for begins, after in edges]
+    found = runs(missing).tolist()
+    return [_Gap(recording.time_at(begins), (after - begins) * dt, begins, after) for begins, after in found]
 
 
 def _pauses(recording: Recording) -> list[_Gap]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+from collections.abc import Container
 from dataclasses import dataclass
 
 #: Time between samples of the bench, s: what the RMCU, the dynamometers' frames and recordings keep to.
@@ -69,3 +70,9 @@ OUTPUTS = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
 ANGLES = {OUTPUTS[0]: MOTOR_ANGLE, OUTPUTS[1]: WHEEL_ANGLE}
 #: What a recording needs one of.
 ANY_OUTPUT = (*OUTPUTS, *ANGLES.values())
+
+
+def read_from(channels: Container[object]) -> dict[str, str]:
+    """The outputs that there are among channels, each with what it is read from: itself or its angle."""
+    own = {name: name if name in channels else ANGLES.get(name, "") for name in OUTPUTS}
+    return {name: channel for name, channel in own.items() if channel in channels}

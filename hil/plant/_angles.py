@@ -10,10 +10,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.channels import ANGLES, OUTPUTS
+from hil.core.channels import OUTPUTS, read_from
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
-from hil.plant.sensors import mean_around
+from hil.plant.sensors import mean_around, way_of
 
 Array = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
@@ -28,7 +28,8 @@ _SURE_RAD, _MOSTLY = 0.5 * np.pi, 0.99  # of a wrapped angle's steps so many are
 
 def by_angle(recording: Recording) -> Flags:
     """Which of `OUTPUTS` a recording has as an angle alone, (3,)."""
-    return np.array([name not in recording and ANGLES.get(name) in recording for name in OUTPUTS], dtype=bool)
+    sources = read_from(recording)
+    return np.array([sources.get(name, name) != name for name in OUTPUTS], dtype=bool)
 
 
 def half_window(dt: float) -> int:
@@ -77,10 +78,8 @@ def as_read(speeds: Array, of_angle: Flags, dt: float) -> Array:
 
 
 def angle_of(speed: Array, dt: float, first_rad: float) -> Array:
-    """Angle in rad of a speed in rad/s, (n,), from the first sample's: the same integral."""
-    padded = np.concatenate([speed[:1], speed, speed[-1:]])
-    inner, outer = padded[1:-2] + padded[2:-1], padded[:-3] + padded[3:]
-    return np.asarray(first_rad + dt * np.concatenate([[0.0], np.cumsum((13.0 * inner - outer) / 24.0)]))
+    """Angle in rad of a speed in rad/s, (n,), from the first sample's on."""
+    return np.asarray(first_rad + dt * way_of(np.ascontiguousarray(speed)))
 
 
 def turned(samples: Array, dt: float, gear_ratio: float, first_wheel_angle_rad: float = 0.0) -> Array:

@@ -7,7 +7,7 @@ speed is noise is left out, octave by octave (N. Wiener, 1949): an inertia would
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -41,14 +41,14 @@ def given_outputs(model: Model) -> Flags:
 
 @dataclass(frozen=True)
 class Turning:
-    """A wheel's slope in rad/s² at every sample (n,), and its speed there in rad/s in the first place.
+    """A wheel's slope in rad/s² at every sample, and its speed in rad/s, (n,) each.
 
     `noise` is the variance of a reading in each octave (upper edges `edges_hz`) that it may be off by; of a
     speed (`order` 1) or of an angle (2).
     """
 
     slope: Array
-    first: float
+    speed: Array
     edges_hz: Array
     noise: Array
     order: int
@@ -57,6 +57,10 @@ class Turning:
         """Variance of a sample of the speed by frequency."""
         of_reading = self.noise[np.searchsorted(self.edges_hz[:-1], frequency_hz)]
         return np.asarray(of_reading * (2.0 * np.pi * frequency_hz) ** (2 * (self.order - 1)))
+
+    def geared(self, ratio: float) -> Turning:
+        """The same behind a gear that turns so much slower."""
+        return replace(self, slope=self.slope / ratio, speed=self.speed / ratio, noise=self.noise / ratio**2)
 
 
 def turning_of(readings: Array, dt: float, order: int = 1) -> Turning:
@@ -88,9 +92,9 @@ def turning_of(readings: Array, dt: float, order: int = 1) -> Turning:
     slope = np.fft.irfft((2j * np.pi * frequency) ** order * kept, len(whole))[: last + 1]
     slope += bent.deriv(order)(at) + (rate / dt if order == 1 else 0.0)
     smooth = np.fft.irfft(kept, len(whole))[: last + 1] + rate * np.arange(last + 1) + bent(at)
-    speed = readings if order == 1 else np.gradient(smooth, dt)
+    seen = readings if order == 1 else np.gradient(smooth, dt)
     moved = np.concatenate([[0.0], np.cumsum(0.5 * dt * (slope[1:] + slope[:-1]))])
-    return Turning(slope, float(np.mean(speed - moved)), edges, share * white / len(whole), order)
+    return Turning(slope, np.mean(seen - moved) + moved, edges, share * white / len(whole), order)
 
 
 def _bent_ends(readings: Array, dt: float) -> Polynomial:
@@ -108,9 +112,9 @@ def stands(model: Model, recording: Recording) -> Flags:
     readings, order = wheel_readings(model, recording)
     dt = recording.sample_time_s
     found = turning_of(readings, dt, order)
-    speed = found.first + np.concatenate([[0.0], np.cumsum(0.5 * dt * (found.slope[1:] + found.slope[:-1]))])
     unsure = np.sqrt(np.mean(found.noise_at(np.linspace(0.0, 0.5 / dt, 1000))))
-    return np.asarray(np.abs(speed) <= max(_QUIET * float(np.max(np.abs(speed))), _NOISES * float(unsure)))
+    size = np.abs(found.speed)
+    return np.asarray(size <= max(_QUIET * float(np.max(size)), _NOISES * float(unsure)))
 
 
 def turning_load(model: Model, recording: Recording) -> Array:

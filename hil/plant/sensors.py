@@ -70,13 +70,20 @@ def lagged(y, before, now, lag, dt):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def mean_around(speed, half):  # type: ignore[no-untyped-def]
-    """What the angle of a speed turns by around each sample, (n,), over time; cubic between samples."""
+def way_of(speed):  # type: ignore[no-untyped-def]
+    """Integral of a speed by samples, (n,), from zero; cubic between them."""
     last = speed.shape[0] - 1
     way = np.zeros(speed.shape[0])
     for k in range(last):
         outer = speed[max(k - 1, 0)] + speed[min(k + 2, last)]
         way[k + 1] = way[k] + (13.0 * (speed[k] + speed[k + 1]) - outer) / 24.0
+    return way
+
+
+@compiled
+def mean_around(speed, half):  # type: ignore[no-untyped-def]
+    """What the angle of a speed turns by around each sample, (n,), over time."""
+    way, last = way_of(speed), speed.shape[0] - 1
     out = np.empty(speed.shape[0])
     for k in range(speed.shape[0]):
         before, after = max(k - half, 0), min(k + half, last)

@@ -92,8 +92,8 @@ for _effect in ACTING:
     FIRST[_effect.id] = len(SLOTS)
     for _parameter in _effect.parameters:
         SLOTS.place(f"{_effect.id}.{_parameter.name}", _parameter.unit, _parameter.meaning)
-#: Of wheels that turn as recorded (`_regulated`): a thousand N m for a minute move them by 1e-4 rad/s, and
-#: doubles still resolve 1e-6 N m beside what does turn them.
+#: Of wheels that turn as recorded (`_regulated`): a thousand N m for a minute move them by 6e-3 rad/s, and
+#: doubles still resolve 1e-7 N m beside what does turn them.
 HEAVY_KG_M2 = 1e7
 #: Dead time of the torque path before transfer functions that stands for none, s: effects may shorten theirs.
 PATH_DELAY_S = 1.0

@@ -15,7 +15,7 @@ from scipy import fft
 from hil.analysis.frequency_response._outside import split_by_motion
 from hil.analysis.frequency_response._quality import UnfitDataError
 from hil.analysis.plausible import refuse_implausible
-from hil.core.channels import ANGLES, INPUT, OUTPUTS, TICK_S, TIME
+from hil.core.channels import ANGLES, INPUT, TICK_S, TIME, read_from
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording, run_of
 from hil.core.result import Segment
@@ -154,19 +154,19 @@ def _choose(known: Sequence[Segment], wanted: Sequence[str], where: str) -> list
 def _experiment(
     recording: Recording, name: str, kind: str, input_channel: str, to_hz: float, hold_s: float | None
 ) -> Experiment:
-    read_from = {output: output if output in recording else ANGLES.get(output, "") for output in OUTPUTS}
-    outputs = tuple(output for output, channel in read_from.items() if channel in recording)
-    names = [input_channel, *(read_from[output] for output in outputs)]
+    sources = read_from(recording)
+    outputs = tuple(sources)
+    names = [input_channel, *sources.values()]
     if REFERENCE in recording and np.all(np.isfinite(recording[REFERENCE])):
         names.append(REFERENCE)
     raw = np.array([_readings(recording, channel) for channel in names])
     if raw.shape[1] < 2:
         raise UnfitDataError("too_short", f"has {raw.shape[1]} samples", where=name)
     values, step, notes = _even(recording[TIME], raw, to_hz, name)
-    for row, output in enumerate(outputs, start=1):
-        if read_from[output] != output:
+    for row, (output, channel) in enumerate(sources.items(), start=1):
+        if channel != output:
             values[row] = _slope(values[row], step)
-            notes = (*notes, f"{output} is the slope of {read_from[output]}")
+            notes = (*notes, f"{output} is the slope of {channel}")
     return Experiment(
         name,
         step,

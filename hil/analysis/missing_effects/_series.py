@@ -49,10 +49,10 @@ class Series:
 
     `torque` is held over samples of `dt` seconds; `samples` (n x 3, in the order of `OUTPUTS`) has NaN where
     a channel was not recorded; `measured` (blocks x 3) are means of `block` samples, NaN also where a channel
-    is `given` to the model (its wheels turn as recorded); `load` brakes the wheels
-    in N m, None where the model takes none. `even`: samples are readings, else interpolated between them.
-    A speed may have been recorded as an `angle` (n x 3, rad; NaN where not): then it is what that turns by
-    around each sample (`hil.plant.speed_of`).
+    is `given` to the model (its wheels turn as recorded); `load` brakes the wheels in N m, None where the
+    model takes none. `even`: samples are readings, else interpolated between them. A speed may have been
+    recorded as an `angle` (n x 3, rad; NaN where not): then it is what that turns by around each sample
+    (`hil.plant.speed_of`).
     """
 
     name: str
@@ -112,7 +112,7 @@ class Series:
         """A first guess of motor speed, wheel speed and shaft torque, no motion inside a tyre: (5,)."""
         motor, wheel, shaft = self.samples[:_FIRST_SAMPLES].mean(axis=0)
         if self.given[1]:
-            wheel = self.turning(gear_ratio).first
+            wheel = self.turning(gear_ratio).speed[0]
         if self.given[0]:
             motor = wheel * gear_ratio
         if not np.isfinite(motor):
@@ -123,11 +123,15 @@ class Series:
 
     def turning(self, gear_ratio: float) -> Turning:
         """What the wheels do, by the motor's channel where they have none themselves."""
+        return self._turning if np.isfinite(self.samples[0, 1]) else self._turning.geared(gear_ratio)
+
+    @cached_property
+    def _turning(self) -> Turning:
+        """What the side does whose motion is given: asked for at every first guess of a start."""
         column = 1 if np.isfinite(self.samples[0, 1]) else 0
-        ratio = (gear_ratio, 1.0)[column]
         if self.of_angle[column]:
-            return turning_of(self.angle[:, column] / ratio, self.dt, 2)
-        return turning_of(self.samples[:, column] / ratio, self.dt)
+            return turning_of(self.angle[:, column], self.dt, 2)
+        return turning_of(self.samples[:, column], self.dt)
 
     def angles(self, gear_ratio: float) -> Array:
         """Wheel and rotor angle in rad at every sample (n x 2), integrated from the recorded speeds."""

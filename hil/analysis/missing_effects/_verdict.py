@@ -298,9 +298,8 @@ def _roundings(done: Candidates, weight: float) -> list[Named]:
     known = {
         use.values.get("channel") for use in done.problem.model.effects if use.id == "sensor_quantization"
     }
-    found = []
+    found, series = [], done.problem.series
     for column, name in enumerate(OUTPUTS):
-        series = done.problem.series
         have = [one.samples[:, column] for one in series if one.has[column] and not one.of_angle[column]]
         step = rounding_step(np.concatenate(have)) if have and name not in known else 0.0
         if step > 0.0 and step / np.sqrt(12.0) >= done.problem.noise[column]:

@@ -66,7 +66,7 @@ def test_what_is_noise_of_a_speed_does_not_turn_the_wheels() -> None:
     inside = slice(200, -200)
     by_differences = np.gradient(noisy, DT)
     assert np.std((found.slope - SLOPE)[inside]) < 0.04 * np.std((by_differences - SLOPE)[inside])
-    assert found.first == pytest.approx(WHEEL[0], abs=5e-3)
+    assert found.speed[0] == pytest.approx(WHEEL[0], abs=5e-3)
     assert found.noise_at(np.array([0.4])) == pytest.approx([0.02**2], rel=0.2)
     assert found.noise_at(np.array([100.0])) < 0.1 * 0.02**2
 

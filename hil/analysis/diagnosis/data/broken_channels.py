@@ -22,6 +22,7 @@ from hil.analysis.diagnosis.data.thresholds import (
     TORQUE_MOVES,
 )
 from hil.analysis.diagnosis.data.trace import Trace
+from hil.analysis.stretches import runs
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 from hil.plant import rounding_step
@@ -102,7 +103,7 @@ def _frozen(trace: Trace, column: int) -> None:
     """A channel with noise never reads the same for long."""
     values = trace.samples[:, column]
     same = np.diff(values) == 0.0
-    first, last = _runs(same)
+    first, last = runs(same).T
     if not first.size or float(np.max(last - first)) < FROZEN_SAMPLES:
         return
     longest = int(np.argmax(last - first))
@@ -120,12 +121,6 @@ def _frozen(trace: Trace, column: int) -> None:
         where=trace.source,
         fix="repair the channel, or cut this part out of the recording",
     )
-
-
-def _runs(flags: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
-    """Where runs of true begin, and where they end."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]])))
-    return edges[::2], edges[1::2]
 
 
 def coarse(trace: Trace, column: int) -> bool:
@@ -153,7 +148,7 @@ def _cut_off(values: Array, at_end: npt.NDArray[np.bool_], noise: float, torque:
 
     A rounded channel has plateaus of its own wherever the torque stays the same.
     """
-    first, last = _runs(at_end)
+    first, last = runs(at_end).T
     reach = PLATEAU_SAMPLES
     whole = (last - first > reach) & (first >= reach) & (last + reach <= len(values))
     if rounding_step(values) > ROUNDED * noise:

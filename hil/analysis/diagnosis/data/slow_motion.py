@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hil.analysis.diagnosis.data.thresholds import SLOW_HZ
-from hil.core.channels import ANGLES, OUTPUTS
+from hil.core.channels import OUTPUTS, read_from
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
@@ -49,8 +49,7 @@ def with_outputs_of(model: Model, recording: Recording) -> Recording:
     """
     if not model.transfer_functions:
         return recording
-    read_from = {name: name if name in recording else ANGLES.get(name, "") for name in OUTPUTS}
-    measured = {name: channel for name, channel in read_from.items() if channel in recording}
+    measured = read_from(recording)
     lacking = [channel for name, channel in measured.items() if name not in model.transfer_functions]
     if not lacking:
         return recording

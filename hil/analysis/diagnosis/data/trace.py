@@ -20,7 +20,7 @@ from hil.analysis.diagnosis.data.thresholds import (
     UNEVEN_SHARE,
 )
 from hil.analysis.spikes import without_spikes
-from hil.core.channels import ANGLES, CHANNELS, INPUT, OUTPUTS, WHEEL_ANGLE
+from hil.core.channels import ANGLES, CHANNELS, INPUT, OUTPUTS, WHEEL_ANGLE, read_from
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import closest
 from hil.core.recording import Recording
@@ -144,7 +144,7 @@ def trace_of(recording: Recording, name: str = "", load: Array | None = None) ->
 def _not_used(recording: Recording) -> list[str]:
     """What to say of channels whose names are nearly those that a diagnosis looks for."""
     strange = [name for name in recording.channels if name not in CHANNELS]
-    there = {*recording.channels, *(name for name, angle in ANGLES.items() if angle in recording)}
+    there = read_from(recording)
     return [
         f"has no {channel}, and '{near}' is not used: if it is that, rename it"
         for channel in OUTPUTS

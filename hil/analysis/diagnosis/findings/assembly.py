@@ -77,11 +77,12 @@ def diagnosis_of(
     verdict, remaining = _verdict(found, effects, unseen, fitted)
     doubt = unseen.words(verdict)
     start, updates = _numbers(found, fitted)
+    stated = effects if verdict == "named" else ()
     return Diagnosis(
         verdict=verdict,
         base=base,
         model=found.model,
-        effects=effects if verdict == "named" else (),
+        effects=stated,
         parameter_updates=updates | as_corrections(small),
         alternatives=_alternatives(found, fitted),
         gap_before=fitted.before,
@@ -106,7 +107,7 @@ def diagnosis_of(
         open_channels=_open(fitted.after),
         held_out_open=unseen.open(verdict),
         worse=tuple(made_worse(fitted.map_before, fitted.map_after)),
-        curves=_curves(found, effects) if verdict == "named" else _curves(found, ()),
+        curves=_curves(found, stated),
         angles=_angles(found.fitted, found, base),
         holdout_angles=_angles(found.held_out, found, base),
     )
