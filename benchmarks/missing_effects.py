@@ -295,6 +295,11 @@ def _real(directory: Path, names: Sequence[str]) -> Iterator[Case]:
             )
 
 
+def blind_cases(seed: int, every: int) -> Iterator[Case]:
+    """Each so-and-so-many-th case of the blind set."""
+    return _blind(argparse.Namespace(seed=seed, every=every, names=[], part=""))
+
+
 def _blind(options: argparse.Namespace) -> Iterator[Case]:
     specs = [
         s

@@ -6,10 +6,8 @@ import contextlib
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
-from hil.analysis.diagnosis.asked import Asked
-from hil.analysis.diagnosis.data.noise import stated_noise
-from hil.analysis.diagnosis.data.sanity import examined
-from hil.analysis.diagnosis.data.slow_motion import with_outputs_of
+from hil.analysis.diagnosis.asked import Asked, stated_noise
+from hil.analysis.diagnosis.data.sanity import examine
 from hil.analysis.diagnosis.findings.assembly import diagnosis_of
 from hil.analysis.diagnosis.findings.result import Diagnosis
 from hil.analysis.missing_effects import explain_gap
@@ -59,10 +57,9 @@ def diagnose(
     with within_floating_point(", ".join(str(r.source) for r in recordings)):
         show("reading the recordings")
         with _by_recorded_names([*recordings, *holdout]):
-            seen = examined(model, recordings)
-            examined(model, holdout, seen.traces)
-        fitted, unseen = ([with_outputs_of(model, one) for one in some] for some in (recordings, holdout))
-        notes = _together([(t.name, n) for t in seen.traces for n in t.notes]) + seen.notes
+            fitted, still = examine(model, recordings)
+            unseen, _ = examine(model, holdout, fitted)
+        notes = _together([(one.name, note) for one in fitted for note in one.notes]) + still
         found = explain_gap(model, fitted, unseen, noise=asked.noise, at_most_s=asked.at_most_s, show=show)
         return diagnosis_of(found, model, asked, notes)
 

@@ -18,8 +18,6 @@ _TESTS = ".venv/bin/python -m pytest tests/hil/analysis/diagnosis/{}"
 CHECKS = {
     "bad_input": _TESTS.format("test_bad_input.py"),
     "gap": _TESTS.format("data/test_gap.py"),
-    "sanity": _TESTS.format("data/test_sanity.py"),
-    "trace": _TESTS.format("data/test_trace.py"),
     "consequences": _TESTS.format("findings/test_consequences.py"),
     "least": _TESTS.format("findings/test_least.py"),
     "separating": _TESTS.format("findings/test_separating.py"),

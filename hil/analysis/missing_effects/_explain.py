@@ -19,24 +19,23 @@ from hil.analysis.missing_effects._odds import Candidate
 from hil.analysis.missing_effects._outcome import Outcome, Replay
 from hil.analysis.missing_effects._problem import Problem, problem_of
 from hil.analysis.missing_effects._search import search
-from hil.analysis.missing_effects._series import series_of
+from hil.analysis.missing_effects._series import Series
 from hil.analysis.missing_effects._verdict import Judged, as_far_as_known, judged
 from hil.core.model import Model
-from hil.core.recording import Recording
 
 Array = npt.NDArray[np.float64]
 
 
 def explain_gap(
     model: Model,
-    recordings: Sequence[Recording],
-    holdout: Sequence[Recording] = (),
+    series: Sequence[Series],
+    holdout: Sequence[Series] = (),
     *,
     noise: Mapping[str, float] | None = None,
     at_most_s: float = math.inf,
     show: Callable[[str], None] = lambda text: None,
 ) -> Outcome:
-    """Say which effects a model lacks to explain recordings, and how sure that is.
+    """Say which effects a model lacks to explain recordings (`series_of`), and how sure that is.
 
     Args:
         model: a chain; its numbers are a prior, so that any base of the same kind gets the same answer. Or
@@ -48,12 +47,8 @@ def explain_gap(
 
     An interrupt (KeyboardInterrupt) ends the search as its time does; before anything is known, and while
     it is stated, it is raised.
-
-    Raises:
-        BadInputError: the recordings have none of the model's channels, or are too short.
     """
     began = time.perf_counter()
-    series = series_of(model, recordings)
     levels = proven_noise(series, noise or {})
     problem = problem_of(model, series, levels)
     problem = replace(problem, allowance=Allowance(at_most_s))
@@ -62,8 +57,7 @@ def explain_gap(
     problem.allowance.lift()
     unseen = problem
     if holdout:
-        held = series_of(model, holdout)
-        unseen = problem_of(model, held, levels, done.problem.spectrum)
+        unseen = problem_of(model, holdout, levels, done.problem.spectrum)
     show("judging")
     shown = _Shown(problem, unseen, done)
     fitted = tuple(Replay(one) for one in problem.series)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,12 +13,21 @@ import numpy.typing as npt
 from hil.analysis.frequency_response import period_samples
 from hil.analysis.missing_effects._spectrum import edges_hz, powers_of
 from hil.analysis.spikes import without_spikes
-from hil.analysis.stretches import excerpts, unbroken, without
-from hil.core.channels import ANGLES, ANY_OUTPUT, INPUT, OUTPUTS, WHEEL_ANGLE
+from hil.analysis.stretches import (
+    GAP_SAMPLES,
+    LEAST_DURATION_S,
+    LEAST_SAMPLES,
+    excerpts,
+    unbroken,
+    without,
+)
+from hil.core.channels import ANGLES, ANY_OUTPUT, CHANNELS, INPUT, OUTPUTS, WHEEL_ANGLE, read_from
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import closest
 from hil.core.model import Model
 from hil.core.recording import Recording
 from hil.plant import (
+    TURNED_OVER_S,
     Turning,
     angle_at,
     by_angle,
@@ -36,6 +45,7 @@ Array = npt.NDArray[np.float64]
 
 FIT_RATE_HZ = 250.0
 """Errors are averaged down to this rate: twice the bandwidth of anything mechanical in an axle."""
+_SLOWEST_S = 0.02  # a recording sampled more slowly is refused
 _EVEN_SHARE = 0.05  # of a sample, by which stamps may be off their grid and still be taken as they are
 _USUAL = 0.95  # of the steps between uneven stamps are at most as long as a block
 _EXCITED = 1e-2  # of the octave that a periodic torque excites most, for an octave that it excites at all
@@ -45,7 +55,7 @@ _FIRST_SAMPLES = 5  # whose mean is the first guess of where a recording begins
 
 @dataclass(frozen=True)
 class Series:
-    """One stretch of a recording.
+    """One stretch of a recording; `source` is its file, `notes` are what was done to its readings.
 
     `torque` is held over samples of `dt` seconds; `samples` (n x 3, in the order of `OUTPUTS`) has NaN where
     a channel was not recorded; `measured` (blocks x 3) are means of `block` samples, NaN also where a channel
@@ -67,6 +77,7 @@ class Series:
     even: bool = True
     given: npt.NDArray[np.bool_] = field(default_factory=lambda: np.zeros(len(OUTPUTS), dtype=bool))
     angle: Array = field(default_factory=lambda: np.full((1, len(OUTPUTS)), np.nan))
+    source: str = ""
 
     @property
     def has(self) -> npt.NDArray[np.bool_]:
@@ -142,11 +153,11 @@ def series_of(model: Model, recordings: Sequence[Recording]) -> list[Series]:
     """The unbroken stretches of all recordings, each on its own even grid.
 
     Raises:
-        BadInputError: no torque request, none of the model's outputs, too short, or no load that the model
-        takes.
+        BadInputError: no torque request, none of the model's outputs, too short, too slowly sampled, or no
+        load that the model takes.
     """
     found = []
-    for recording in recordings:
+    for recording in (_comparable(model, one) for one in recordings):
         for part in unbroken(recording, model.load_input):
             found += [_series(model, piece) for whole in excerpts(part) for piece in _moving(model, whole)]
     if is_regulated(model) and not any(one.has.any() for one in found):
@@ -169,11 +180,71 @@ def _moving(model: Model, recording: Recording) -> list[Recording]:
     return without(recording, stands(model, recording), _RESTS_S)
 
 
+def _comparable(model: Model, recording: Recording) -> Recording:
+    """The recording without outputs that a transfer-function model has no function for; a note says so."""
+    measured = read_from(recording)
+    lacking = [channel for name, channel in measured.items() if name not in model.transfer_functions]
+    if not (model.transfer_functions and lacking):
+        return recording
+    if len(lacking) == len(measured):
+        raise BadInputError(
+            f"the model has no function for any of its outputs: {', '.join(measured.values())}",
+            where=str(recording.source),
+            fix="add [transfer_functions] of one of them to the model file, or record what the model shows",
+        )
+    notes = [*recording.notes, f"the model has no function for {', '.join(lacking)}: not compared"]
+    return replace(recording.without(lacking), notes=notes)
+
+
+def _refuse_too_little(recording: Recording) -> None:
+    where, lasts_s = str(recording.source), float(recording.time_s[-1] - recording.time_s[0])
+    if recording.samples < LEAST_SAMPLES:
+        raise BadInputError(
+            f"has {recording.samples} samples, a diagnosis needs {LEAST_SAMPLES}",
+            where=where,
+            fix="record longer",
+        )
+    if recording.sample_time_s > _SLOWEST_S:
+        raise BadInputError(
+            f"is sampled every {recording.sample_time_s * 1e3:g} ms: too slow for a driveline",
+            where=where,
+            fix="record at 100 Hz or more, best at 1 kHz; or is time_s in another unit?",
+        )
+    if lasts_s < LEAST_DURATION_S:
+        raise BadInputError(
+            f"lasts {lasts_s:.3g} s, a diagnosis needs {LEAST_DURATION_S:g} s",
+            where=where,
+            fix="record longer; or is time_s in another unit?",
+        )
+
+
+def _notes(recording: Recording, even: bool, dt: float) -> list[str]:
+    """What was done to a recording's readings, and which channels may have been meant to be read."""
+    strange = [name for name in recording.channels if name not in CHANNELS]
+    there = read_from(recording)
+    notes = [
+        f"has no {channel}, and '{near}' is not used: if it is that, rename it"
+        for channel in OUTPUTS
+        if channel not in there and (near := closest(channel, strange))
+    ]
+    if not even:
+        notes.append(f"time stamps are uneven: put on a grid of {dt * 1e3:.4g} ms")
+        pauses = np.diff(recording.time_s)
+        if pauses.max() > GAP_SAMPLES * dt:
+            at = recording.time_s[int(np.argmax(pauses))]
+            notes[-1] += f", with a gap of {pauses.max():.3g} s at {at:.3g} s bridged"
+    notes += [
+        f"{name} is what {angle} turns by within {TURNED_OVER_S * 1e3:g} ms"
+        for name, angle in there.items()
+        if name != angle
+    ]
+    return notes
+
+
 def _series(model: Model, recording: Recording) -> Series:
+    _refuse_too_little(recording)
     time = recording.time_s
     count = round(float(time[-1] - time[0]) / recording.sample_time_s)
-    if count < 16:
-        raise BadInputError(f"has {len(time)} samples", where=str(recording.source), fix="record longer")
     dt = float(time[-1] - time[0]) / count
     grid = time[0] + dt * np.arange(count + 1)
     nearest = np.clip(np.searchsorted(time, grid - 0.5 * dt), 0, len(time) - 1)
@@ -184,30 +255,36 @@ def _series(model: Model, recording: Recording) -> Series:
         return np.asarray(values[nearest] if even else np.interp(grid, time, values), dtype=float)
 
     samples, angle = np.full((2, len(grid), len(OUTPUTS)), np.nan)
-    of_angle = by_angle(recording)
+    of_angle, notes = by_angle(recording), [*recording.notes, *_notes(recording, even, dt)]
     for column, name in enumerate(OUTPUTS):
         if of_angle[column]:
             angle[:, column] = angle_at(recording, ANGLES[name], grid)
             samples[:, column] = speed_of(angle[:, column], dt)
         elif name in recording:
-            samples[:, column] = without_spikes(on_grid(recording[name]), name, dt)[0]
+            samples[:, column], note = without_spikes(on_grid(recording[name]), name, dt)
+            notes += [note] if note else []
     block = max(1, round(1.0 / (FIT_RATE_HZ * dt)))
     if not even:  # a block without a reading of its own would show what was interpolated
         block = max(block, math.ceil(float(np.quantile(np.diff(time), _USUAL)) / dt))
-    blocks = len(grid) // block
     load, given = load_of(model, recording), given_outputs(model)
-    measured = samples[: blocks * block].reshape(blocks, block, -1).mean(axis=1)
     return Series(
         recording.source.stem,
         np.ascontiguousarray(recording[INPUT][nearest if even else held], dtype=float),
         dt,
         block,
         samples,
-        np.where(given, np.nan, measured),
+        np.where(given, np.nan, block_means(samples, block)),
         None if load is None else on_grid(load),
         float(recording[WHEEL_ANGLE][0]) if WHEEL_ANGLE in recording else 0.0,
-        () if even else (f"{recording.source.stem}: uneven time stamps, put on a grid of {dt * 1e3:.4g} ms",),
+        tuple(notes),
         even,
         given,
         angle,
+        str(recording.source),
     )
+
+
+def block_means(samples: Array, block: int) -> Array:
+    """Means of `block` rows each; what does not fill a block is left out."""
+    count = len(samples) // block
+    return np.asarray(samples[: count * block].reshape(count, block, -1).mean(axis=1))

@@ -5,19 +5,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hil.analysis.diagnosis.data.trace import trace_of
+from hil.analysis.missing_effects import series_of
 from hil.analysis.spikes import SPIKES, without_spikes
-from tests.hil.analysis.diagnosis.one_recording import recorded
+from tests.hil.analysis.diagnosis.one_recording import MODEL, recorded
 
 WHEEL = "wheel_speed_rad_s"
 
 
 def test_a_glitch_is_replaced_and_told_with_its_place() -> None:
     recording = recorded()
-    clean = trace_of(recording)
+    clean = series_of(MODEL, [recording])[0]
     recording.channels[WHEEL] = recording[WHEEL].copy()
     recording.channels[WHEEL][2000] = 5000.0
-    mended = trace_of(recording)
+    mended = series_of(MODEL, [recording])[0]
     assert mended.notes == (
         f"a single reading of 5000 at 2 s in {WHEEL} omitted: no axle can move so far and back in a sample",
     )

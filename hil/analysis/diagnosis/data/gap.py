@@ -16,7 +16,7 @@ from hil.analysis.diagnosis.data.thresholds import (
     WORSE,
     WORSE_NOISES,
 )
-from hil.analysis.diagnosis.data.trace import Trace
+from hil.analysis.missing_effects import Series
 from hil.core.channels import OUTPUTS
 from hil.core.errors.wording import factor, multiple
 
@@ -51,7 +51,7 @@ class GapMap:
     by_condition: Array
 
 
-def channel_gaps(traces: Sequence[Trace], floor: Array, simulated: Sequence[Array]) -> dict[str, ChannelGap]:
+def channel_gaps(traces: Sequence[Series], floor: Array, simulated: Sequence[Array]) -> dict[str, ChannelGap]:
     """Gap and noise floor of each measured channel over the recordings together.
 
     Args:
@@ -79,7 +79,7 @@ def channel_gap(measured: Sequence[Array], simulated: Sequence[Array], floor: fl
     return ChannelGap(float(np.sqrt(np.mean(error**2))) / spread, floor / spread)
 
 
-def gap_map(traces: Sequence[Trace], noise: Array, simulated: Sequence[Array]) -> GapMap:
+def gap_map(traces: Sequence[Series], noise: Array, simulated: Sequence[Array]) -> GapMap:
     """Where the error stands above `noise`, the standard deviation of each channel per sample, shape (3,)."""
     bands = np.full((len(traces), 3, len(BANDS_HZ)), np.nan)
     sums, counts = np.zeros((2, len(CONDITIONS), 3))

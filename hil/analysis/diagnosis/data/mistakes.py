@@ -1,174 +1,291 @@
-"""Units, signs and columns that were mistaken: seen by what the model says to the same torque.
+"""Units, signs and columns that were mistaken: refused where a mistake is far likelier than none.
 
-Such a mistake has no number that could be fitted: it is there or not. So each is undone, and the model is
-asked which recording it knows. A mistake is named only where a channel as it stands is nothing like the model
-and mended every channel is like it; no missing effect and no wrong parameter does both.
+Four pairs x, y should be alike: each output by the model and as recorded, and both speeds, that of the wheel
+times the gear ratio. Over the lines of an octave, in all stretches of a file, they have a correlation ρ and a
+ratio of sizes g, and are unlike by
+
+    d = |y - x|² / (|y|² + |x|²) = 1 - ρ / cosh(ln g):  0 alike, 1 unrelated, 2 opposite.
+
+An octave that belongs together has a small d, exponential with mean τ. With probability w it is anything,
+uniform from 0 to 2: a resonance that lies elsewhere, friction, play, a drift. Sizes are free by what numbers
+of a model may be off: each pair's, and one that all outputs share, as less torque may be delivered than was
+asked for. A mistake turns pairs, scales them, exchanges columns, or leaves one nothing but noise; its
+likelihood is compared with that of none.
 """
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Sequence
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.data.thresholds import (
     ALIKE,
-    BAND_SHARE,
-    LEAST_BANDS,
-    MISTAKE_BANDS_HZ,
-    MISTAKE_TREND,
+    ALIKE_SPEEDS,
+    ANY_SIZE,
+    ANYTHING,
+    FREE_SIZE,
+    GEAR_SIZE,
+    LIKELIER,
+    PLAY_RAD,
     SHOWS,
-    UNLIKE,
+    TREND,
 )
-from hil.analysis.diagnosis.data.trace import Trace
-from hil.analysis.diagnosis.data.turns import around
+from hil.analysis.missing_effects import Series
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import multiple
 from hil.core.model import Model
 from hil.plant import gear_ratio_of, pack, sensor_of, simulate_many
 
 Array = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
+Lines = npt.NDArray[np.complex128]
 
 _MOTOR, _WHEEL, _SHAFT = OUTPUTS
-_PER_RPM = 2.0 * np.pi / 60.0
+_SPEEDS = f"{_MOTOR} and {_WHEEL}"
+_GEAR = 3  # the pair of both speeds, behind those of the outputs
+_EDGES_HZ = (0.0, 0.06, 0.12, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
+_BANDS = len(_EDGES_HZ) - 1
+_RPM = 60.0 / (2.0 * np.pi)
+_LEAST, _FAR = 1e-30, 1e9
+_STEP = 0.1
+_SIZES = np.arange(-90, 91) * _STEP  # logs of factors that are tried
 
 
 @dataclass(frozen=True)
 class _Mistake:
-    """What may have been mistaken: factors that mend torque and outputs, and outputs that are exchanged."""
+    """What may have been mistaken: factors that mend torque and outputs, and speeds that are exchanged.
+
+    Pairs in `free` have any size; of a channel that is `dead` only noise was recorded.
+    """
 
     what: str
     fix: str
     torque: float = 1.0
     outputs: tuple[float, float, float] = (1.0, 1.0, 1.0)
     exchanged: bool = False
-
-    def undone(self, trace: Trace) -> Trace:
-        """The recording without the mistake."""
-        order = [1, 0, 2] if self.exchanged else [0, 1, 2]
-        factor = np.array(self.outputs)
-        return dataclasses.replace(
-            trace,
-            torque=trace.torque * self.torque,
-            samples=trace.samples[:, order] * factor,
-            measured=trace.measured[:, order] * factor,
-            start=trace.start[order] * factor,
-        )
+    free: tuple[int, ...] = ()
+    dead: int | None = None
 
 
-def _outputs(column: int, factor: float) -> tuple[float, float, float]:
-    factors = [1.0, 1.0, 1.0]
-    factors[column] = factor
-    return factors[0], factors[1], factors[2]
-
-
-_SIGN, _RPM, _KNM = "invert the sign of the channel", "multiply it by 2π/60", "multiply it by 1000"
+_NONE = _Mistake("", "")
+_FALLS = "looks inverted: it falls when torque pushes"
+_SIGN = f"invert the sign of the channel, or of {INPUT}"
+_TO_RAD_S, _TO_NM = "multiply it by 2π/60", "multiply it by 1000"
+_FITS = "check that the model belongs to this axle, and the units of the channels"
+_DEAD = "looks dead: it shows only noise while the axle moves"
+_REPAIR = "repair the channel, or omit it from the recordings"
 _MISTAKES = (
-    *(_Mistake(f"{name} looks inverted", _SIGN, 1.0, _outputs(c, -1.0)) for c, name in enumerate(OUTPUTS)),
-    _Mistake(f"{INPUT} looks inverted: the axle does the opposite", _SIGN, -1.0),
-    _Mistake(f"{_MOTOR} and {_WHEEL} look inverted", "invert the sign of both", 1.0, (-1.0, -1.0, 1.0)),
-    _Mistake(f"{_MOTOR} and {_WHEEL} look swapped", "exchange the two columns", exchanged=True),
-    _Mistake(f"{_MOTOR} looks like rpm", _RPM, 1.0, _outputs(0, _PER_RPM)),
-    _Mistake(f"{_WHEEL} looks like rpm", _RPM, 1.0, _outputs(1, _PER_RPM)),
+    _Mistake(f"{_MOTOR} {_FALLS}", _SIGN, outputs=(-1.0, 1.0, 1.0)),
+    _Mistake(f"{_WHEEL} {_FALLS}", _SIGN, outputs=(1.0, -1.0, 1.0)),
+    _Mistake(f"{_SHAFT} looks inverted", _SIGN, outputs=(1.0, 1.0, -1.0)),
+    _Mistake(f"{INPUT} looks inverted: the axle does the opposite", "invert the sign of it", torque=-1.0),
+    _Mistake(f"{_SPEEDS} look inverted", "invert the sign of both", outputs=(-1.0, -1.0, 1.0)),
+    _Mistake(f"{_SPEEDS} look swapped", "exchange the two columns", exchanged=True),
+    _Mistake(f"{_MOTOR} looks like rpm", _TO_RAD_S, outputs=(1.0 / _RPM, 1.0, 1.0)),
+    _Mistake(f"{_WHEEL} looks like rpm", _TO_RAD_S, outputs=(1.0, 1.0 / _RPM, 1.0)),
+    _Mistake(f"{_SPEEDS} look like rpm", "multiply both by 2π/60", outputs=(1.0 / _RPM, 1.0 / _RPM, 1.0)),
+    _Mistake(f"{_SHAFT} looks like kN m", _TO_NM, outputs=(1.0, 1.0, 1e3)),
+    _Mistake(f"{INPUT} looks like kN m", _TO_NM, torque=1e3),
+    _Mistake(f"{INPUT} and {_SHAFT} look like kN m", "multiply both by 1000", 1e3, (1.0, 1.0, 1e3)),
     _Mistake(
-        f"{_MOTOR} and {_WHEEL} look like rpm", "multiply both by 2π/60", 1.0, (_PER_RPM, _PER_RPM, 1.0)
+        "the gear ratio looks wrong: motor over wheel speed is {gear:.3g}, the model has {ratio:.3g}",
+        _FITS,
+        free=(_GEAR,),
     ),
-    _Mistake(f"{_SHAFT} looks like kN m", _KNM, 1.0, _outputs(2, 1000.0)),
-    _Mistake(f"{INPUT} looks like kN m", _KNM, 1000.0),
-    _Mistake(f"{INPUT} and {_SHAFT} look like kN m", "multiply both by 1000", 1000.0, _outputs(2, 1000.0)),
+    _Mistake(
+        f"{_SHAFT} is {{2}} what the model says to the torque",
+        "check its unit, and that it is on the wheel side of the gear",
+        free=(2,),
+    ),
+    _Mistake(f"{_MOTOR} changes {{0}} as fast as the torque can make it", _FITS, free=(0,)),
+    _Mistake(f"{_WHEEL} changes {{1}} as fast as the torque can make it", _FITS, free=(1,)),
+    _Mistake(f"{_SPEEDS} change {{0}} as fast as the torque can make them", _FITS, free=(0, 1)),
+    *(_Mistake(f"{name} {_DEAD}", _REPAIR, dead=column) for column, name in enumerate(OUTPUTS)),
 )
 
 
-def mistaken(model: Model, traces: Sequence[Trace], noise: Array) -> BadInputError | None:
-    """The mistake that explains what nothing else does, if there is one.
+def mistaken(model: Model, series: Sequence[Series], noise: Array) -> BadInputError | None:
+    """The mistake that is beyond doubt, if there is one.
 
     Args:
-        noise: standard deviation of each output per sample, shape (3,).
+        noise: standard deviation of each output's block means, shape (3,), NaN where it was not recorded.
     """
-    given = _Likeness.of(model, traces, noise)
-    if not np.any(given.channels() > UNLIKE):
+    seen = {factor: _pairs(model, series, noise, factor) for factor in {m.torque for m in _MISTAKES}}
+    gains = [_gain(seen[1.0], seen[one.torque], one) for one in _MISTAKES]
+    alike = np.flatnonzero(np.array(gains) > max(gains) - np.log(2.0)).tolist()  # a tie
+    best = alike[0]
+    if gains[best] < np.log(LIKELIER):
         return None
-    found: list[tuple[float, _Mistake]] = []
-    for mistake in _MISTAKES:
-        undone = [mistake.undone(trace) for trace in traces]
-        mended = _Likeness.of(model, undone, noise * np.abs(np.array(mistake.outputs)))
-        channels = mended.channels()
-        if np.any(np.isfinite(given.channels()) & ~(channels <= ALIKE)):
-            continue
-        turned = mistake.torque < 0.0 or min(mistake.outputs) < 0.0
-        # a resonance that lies elsewhere turns the sign of a narrow band by itself
-        better = np.any((given.bands() > UNLIKE) & (mended.bands() < ALIKE), axis=1)
-        if not turned or np.count_nonzero(better) >= LEAST_BANDS:
-            found.append((float(np.nanmean(channels)), mistake))
-    if not found:
-        return None
-    best = min(found, key=lambda one: one[0])[1]
-    return BadInputError(
-        f"{best.what}: the model explains almost nothing of the data, and almost all after this correction",
-        fix=f"{best.fix}; or check that the model belongs to this axle",
-    )
+    found, ratio = _MISTAKES[best], gear_ratio_of(model) or 1.0
+    sizes = np.exp(seen[1.0][0].middle_sizes())
+    what = found.what.format(*(multiple(size) for size in sizes), gear=sizes[_GEAR] * ratio, ratio=ratio)
+    if alike[:2] == [0, 1]:  # no torque tells which
+        what = f"either {_MOTOR} or {_WHEEL} looks inverted"
+    return BadInputError(what, fix=found.fix)
 
 
 @dataclass(frozen=True)
-class _Likeness:
-    """Power of recordings and model together, and of their difference, bands x channels."""
+class _Pairs:
+    """Of each pair and octave (pairs x bands): correlation of x and y, and log of y's size over x's.
 
-    apart: Array
+    `known`: one of them stands out of the noise. `silent` (2 x pairs x bands): x or y is noise where the
+    other stands out. `turns`: a speed goes further there than play and twist allow.
+    """
+
+    correlation: Array
     size: Array
-    shown: npt.NDArray[np.bool_]
+    known: Flags
+    silent: Flags
+    turns: Flags
 
     @classmethod
-    def of(cls, model: Model, traces: Sequence[Trace], noise: Array) -> _Likeness:
-        """Compare recordings with what the model says to their torque."""
-        apart, size, least = (np.zeros((len(MISTAKE_BANDS_HZ) - 1, 3)) for _ in range(3))
-        for trace in traces:
-            seen, simulated = _spectra(trace.measured), _spectra(_simulated(model, trace))
-            lines = np.fft.rfftfreq(len(trace.measured), trace.dt * trace.block)
-            for band, (low, high) in enumerate(pairwise(MISTAKE_BANDS_HZ)):
-                inside = (lines >= low) & (lines < high)
-                apart[band] += np.sum(np.abs(seen[inside] - simulated[inside]) ** 2, axis=0)
-                size[band] += np.sum(np.abs(seen[inside]) ** 2 + np.abs(simulated[inside]) ** 2, axis=0)
-                share = np.count_nonzero(inside) / len(lines)
-                least[band] += share * len(trace.measured) * np.nan_to_num(noise) ** 2 / trace.block
-        known = np.isfinite(size) & (size > SHOWS * least) & (size > 0.0)
-        return cls(apart, size, known & (size > BAND_SHARE * np.nansum(size, axis=0)))
+    def of(cls, sums: Array) -> _Pairs:
+        """Of sums (6 x pairs x bands): |x|², |y|², Re x*y, noise in x and in y; stretches that turn far."""
+        xx, yy, xy, noise_x, noise_y, turns = sums
+        noise = SHOWS * np.maximum(noise_x, noise_y)
+        shown = np.asarray([xx > noise, yy > noise], dtype=bool)
+        silent = np.asarray([xx < 2.0 * noise_x, yy < 2.0 * noise_y], dtype=bool) & shown[::-1]
+        xx, yy = np.maximum(xx, _LEAST), np.maximum(yy, _LEAST)
+        known = np.asarray(shown.any(axis=0), dtype=bool)
+        return cls(xy / np.sqrt(xx * yy), 0.5 * np.log(yy / xx), known, silent, turns > 0.0)
 
-    def bands(self) -> Array:
-        """How unlike they are: 0 alike, 1 unrelated, 2 opposite; NaN where nothing shows beyond noise."""
-        return np.where(self.shown, self.apart / np.where(self.shown, self.size, 1.0), np.nan)
-
-    def channels(self) -> Array:
-        """The same over all bands."""
-        size = np.sum(np.where(self.shown, self.size, 0.0), axis=0)
-        apart = np.sum(np.where(self.shown, self.apart, 0.0), axis=0)
-        return np.where(size > 0.0, apart / np.where(size > 0.0, size, 1.0), np.nan)
+    def middle_sizes(self) -> Array:
+        """Log of y over x of each pair (4,), octaves weighed by their correlation."""
+        weight = np.where(self.known, np.abs(self.correlation), 0.0)
+        return np.asarray(np.sum(weight * self.size, axis=1) / np.maximum(np.sum(weight, axis=1), _LEAST))
 
 
-def _simulated(model: Model, trace: Trace) -> Array:
-    """What a model shows of a recording's torque, from its own start: blocks x 3, NaN where not measured."""
+def _gain(given: tuple[_Pairs, _Pairs], mended: tuple[_Pairs, _Pairs], mistake: _Mistake) -> float:
+    """Log likelihood by a mistake over that by none, of the same octaves."""
+    other = mended[1] if mistake.exchanged else mended[0]
+    known = given[0].known | other.known if mistake.exchanged else given[0].known
+    none = _log_likelihood(replace(given[0], known=known), _NONE)
+    return _log_likelihood(replace(other, known=known), mistake) - none
+
+
+def _log_likelihood(pairs: _Pairs, mistake: _Mistake) -> float:
+    """Log likelihood by a mistake over that of pairs that are anything; sizes are integrated over."""
+    factors = [*mistake.outputs, mistake.outputs[0] / mistake.outputs[1]]
+    by_size = [_by_size(pairs, pair, factor, mistake) for pair, factor in enumerate(factors)]
+    shared = -np.sqrt(2.0) * np.abs(_SIZES) / FREE_SIZE - np.log(np.sqrt(2.0) * FREE_SIZE / _STEP)
+    outputs = float(np.logaddexp.reduce(shared + np.sum(by_size[:_GEAR], axis=0)))
+    return outputs + float(by_size[_GEAR][len(_SIZES) // 2])
+
+
+def _by_size(pairs: _Pairs, pair: int, factor: float, mistake: _Mistake) -> Array:
+    """Log likelihood of a pair for each of `_SIZES`, which outputs share, beside a factor of its own."""
+    known = pairs.known[pair]
+    if mistake.dead is not None and pair in (mistake.dead, *((_GEAR,) if mistake.dead < 2 else ())):
+        return np.full(len(_SIZES), _log_dead(pairs, pair, mistake.dead))
+    correlation = pairs.correlation[pair, known] * np.sign(factor)
+    away = pairs.size[pair, known] + np.log(abs(factor)) - _SIZES[:, None]
+    alike = np.sum(_log_alike(1.0 - correlation / np.cosh(away), pair), axis=1)
+    width = ANY_SIZE if pair in mistake.free else GEAR_SIZE if pair == _GEAR else FREE_SIZE
+    own = np.exp(-0.5 * (_SIZES / width) ** 2)
+    most = float(np.max(alike))
+    return np.asarray(np.log(np.convolve(np.exp(alike - most), own / np.sum(own), "same") + _LEAST) + most)
+
+
+def _log_dead(pairs: _Pairs, pair: int, column: int) -> float:
+    """Log likelihood of a pair of which a channel reads noise alone where a speed that goes with it moves."""
+    if column == 2:
+        moves = np.asarray((pairs.known[:2] & ~pairs.silent[1, :2]).any(axis=0), dtype=bool)
+    else:
+        moves = pairs.silent[1 - column, _GEAR] & pairs.turns[_GEAR]
+    dead = moves if pair == _GEAR else pairs.silent[1, pair] & moves
+    return float(np.sum(_log_alike(np.where(dead[pairs.known[pair]], 0.0, 1.0), pair)))
+
+
+def _log_alike(unlike: Array, pair: int) -> Array:
+    """Log density of how unlike a pair is in an octave, over that of anything."""
+    usual = ALIKE_SPEEDS if pair == _GEAR else ALIKE
+    small = 2.0 / usual * np.exp(-unlike / usual)
+    return np.asarray(np.log((1.0 - ANYTHING) * small + ANYTHING))
+
+
+def _pairs(model: Model, series: Sequence[Series], noise: Array, torque: float) -> tuple[_Pairs, _Pairs]:
+    """Of recordings with the torque times a factor: columns as they are, and both speeds exchanged."""
+    sums = np.sum([_sums(one, model, np.nan_to_num(noise), torque) for one in series], axis=0)
+    return _Pairs.of(sums[0]), _Pairs.of(sums[1])
+
+
+def _sums(one: Series, model: Model, noise: Array, torque: float) -> Array:
+    """What `_Pairs.of` asks for, 2 x 6 x pairs x bands: columns as they are, and both speeds exchanged."""
     ratio = gear_ratio_of(model) or 1.0
-    motor, wheel, shaft = (float(value) for value in trace.start)
-    if not np.isfinite(motor):
-        motor = wheel * ratio if np.isfinite(wheel) else 0.0
-    if not np.isfinite(wheel):
-        wheel = motor / ratio
-    start = np.array([[motor, wheel, shaft if np.isfinite(shaft) else 0.0]])
+    lines = _Lines.of(one)
+    y, whole = lines.transformed(np.nan_to_num(one.measured))
+    x, shown = lines.transformed(_simulated(model, one, torque * one.torque, ratio))
+    x[:, 2], y[:, 2] = shown[:, 2], whole[:, 2]  # a mean torque says something, a mean speed how it began
+    noise = np.where(one.of_angle, 0.0, noise)  # slow octaves of an encoder have none
+    rigid = _rigid(one, lines, ratio * x[:, 1], x[:, 0])
+    found = np.zeros((2, 6, _GEAR + 1, _BANDS))
+    orders = ((0, 1, 2), (1, 0, 2)) if one.has[:2].all() else ((0, 1, 2),)
+    for row, (first, second, third) in zip(found, orders, strict=False):
+        for pair, column in enumerate((first, second, third)):
+            if one.has[column]:
+                row[:5, pair] = lines.sums(x[:, pair], y[:, column], 0.0, noise[column])
+        of_speeds = lines.sums(ratio * whole[:, second], whole[:, first], ratio * noise[second], noise[first])
+        row[:5, _GEAR] = rigid * of_speeds
+        row[5] = lines.turned(whole[:, 0] / ratio, whole[:, 1]) > _apart_rad(model, one, ratio)
+    return found
+
+
+def _rigid(one: Series, lines: _Lines, wheel: Lines, motor: Lines) -> Flags:
+    """Octaves in which both speeds go together by the model; none where one was not recorded."""
+    xx, yy, xy, _, _ = lines.sums(wheel, motor, 0.0, 0.0)
+    return np.asarray((xx + yy - 2.0 * xy <= ALIKE_SPEEDS * (xx + yy)) & one.has[:2].all(), dtype=bool)
+
+
+def _apart_rad(model: Model, one: Series, ratio: float) -> float:
+    """How far play and twist let both sides turn apart, rms."""
+    return PLAY_RAD + ratio * float(np.std(one.torque)) / model.parameters.get("shaft_stiffness", np.inf)
+
+
+@dataclass(frozen=True)
+class _Lines:
+    """The lines of a stretch: in which octave each is, and the window of transforms."""
+
+    frequency_hz: Array
+    band: npt.NDArray[np.int64]
+    window: Array
+
+    @classmethod
+    def of(cls, one: Series) -> _Lines:
+        """Of block means."""
+        count = len(one.measured)
+        frequency = np.asarray(np.fft.rfftfreq(count, 1.0 / one.rate_hz), dtype=float)
+        band = np.searchsorted(_EDGES_HZ, frequency, side="right") - 1
+        return cls(frequency, band, np.hanning(count + 1)[:-1])
+
+    def transformed(self, values: Array) -> tuple[Lines, Lines]:
+        """Of channels (blocks x 3) about their trend, and with their first octave as it is."""
+        at = np.linspace(-1.0, 1.0, len(values))
+        trend = np.polynomial.legendre.legval(at, np.polynomial.legendre.legfit(at, values, TREND)).T
+        about, whole = (np.fft.rfft(some * self.window[:, None], axis=0) for some in (values - trend, values))
+        return about, np.where((self.band == 0)[:, None], whole, about)
+
+    def sums(self, x: Lines, y: Lines, noise_x: float, noise_y: float) -> Array:
+        """Over the lines of each octave: |x|², |y|², Re x*y, noise in x and in y; 5 x bands."""
+        square = float(self.window @ self.window)
+        noise = (np.full(len(x), square * level**2) for level in (noise_x, noise_y))
+        rows = (np.abs(x) ** 2, np.abs(y) ** 2, (x.conj() * y).real, *noise)
+        return np.stack([np.bincount(self.band, row, _BANDS + 1)[:_BANDS] for row in rows])
+
+    def turned(self, *speeds: Lines) -> Array:
+        """Rms angle in each octave by that of some speeds that turns further, (bands,)."""
+        turned = np.max(np.abs(speeds), axis=0)[1:] / (2.0 * np.pi * self.frequency_hz[1:])
+        square = np.bincount(self.band[1:], turned**2, _BANDS + 1)[:_BANDS]
+        return np.asarray(np.sqrt(2.0 * square / (len(self.window) * float(self.window @ self.window))))
+
+
+def _simulated(model: Model, one: Series, torque: Array, ratio: float) -> Array:
+    """What a model shows of a torque from a recording's start: blocks x 3, zero where it was not recorded."""
     sensors = np.stack([sensor_of(model, channel) for channel in OUTPUTS])[None]
-    angles = trace.angles(ratio)
-    functions = model.transfer_functions
-    simulated = simulate_many(
-        pack(model)[None], trace.torque, trace.dt, start, sensors, trace.block, angles, trace.load, functions
-    )[0]
-    return np.where(trace.has, simulated, np.nan)
-
-
-def _spectra(values: Array) -> Array:
-    """Spectra of channels (blocks x 3) about their trend; NaN where not measured."""
-    known = np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
-    window = np.hanning(len(values) + 1)[:-1, None]
-    spectra = np.fft.rfft(around(MISTAKE_TREND, known) * window, axis=0)
-    return np.where(np.all(np.isnan(values), axis=0), np.nan, spectra)
+    start, angles, functions = one.first_state(ratio)[None], one.angles(ratio), model.transfer_functions
+    slots = pack(model)[None]
+    shown = simulate_many(slots, torque, one.dt, start, sensors, one.block, angles, one.load, functions)[0]
+    return np.where(one.has, np.clip(np.nan_to_num(shown), -_FAR, _FAR), 0.0)

@@ -18,7 +18,6 @@ from hil.analysis.diagnosis.data.gap import (
     gap_map,
     made_worse,
 )
-from hil.analysis.diagnosis.data.trace import Trace
 from hil.analysis.diagnosis.findings.consequences import consequences
 from hil.analysis.diagnosis.findings.held_out import HeldOut, furthest
 from hil.analysis.diagnosis.findings.named import as_corrections, clean, worth_naming
@@ -33,7 +32,7 @@ from hil.analysis.diagnosis.findings.result import (
 from hil.analysis.diagnosis.findings.separating import plan_file, plan_within_recordings, worth_a_plan
 from hil.analysis.diagnosis.findings.thresholds import CHANNEL_NOISES
 from hil.analysis.diagnosis.findings.words import Where, band_of_gap, where_changed
-from hil.analysis.missing_effects import OUT_OF_TIME, Curve, Named, Outcome, Replay
+from hil.analysis.missing_effects import OUT_OF_TIME, Curve, Named, Outcome, Replay, Series
 from hil.core.channels import ANGLES, OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.errors.wording import multiple, share
@@ -133,7 +132,7 @@ class _Shown:
     """Recordings at full rate beside the model as it came and the one given back."""
 
     replays: tuple[Replay, ...]
-    traces: list[Trace]
+    traces: list[Series]
     before_samples: list[Array]
     after_samples: list[Array]
     before: dict[str, ChannelGap]
@@ -144,7 +143,7 @@ class _Shown:
     @classmethod
     def of(cls, replays: tuple[Replay, ...], base: Model, model: Model, noise: Array) -> _Shown:
         """Both models on recordings; `noise` (3,) is a standard deviation of a sample."""
-        traces = [_trace(one) for one in replays]
+        traces = [one.series for one in replays]
         before, after = (_outputs(replays, each) for each in (base, model))
         gaps = [channel_gaps(traces, noise, samples) for samples in (before, after)]
         maps = [gap_map(traces, noise, samples) for samples in (before, after)]
@@ -188,14 +187,6 @@ def _angles(
             )
             gaps[ANGLES[channel]] = (next(both), next(both))
     return gaps
-
-
-def _trace(one: Replay) -> Trace:
-    s = one.series
-    return Trace(
-        s.name, s.torque, s.dt, s.block, s.samples, s.measured, s.samples[0], s.notes,
-        s.first_wheel_angle_rad, load=s.load,
-    )  # fmt: skip
 
 
 def _named(found: Outcome, one: Named, shown: _Shown) -> NamedEffect:

@@ -10,9 +10,9 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.data.gap import ChannelGap
 from hil.analysis.diagnosis.data.thresholds import SLOW_UNPROVEN
-from hil.analysis.diagnosis.data.trace import Trace
 from hil.analysis.diagnosis.findings.result import Verdict
 from hil.analysis.diagnosis.findings.thresholds import CHANNEL_NOISES, EVENT_NOISES, EVENT_S
+from hil.analysis.missing_effects import Series
 from hil.core.channels import OUTPUTS
 from hil.core.errors.wording import multiple
 
@@ -69,7 +69,7 @@ class HeldOut:
         return f"{'; '.join(lines)}: {_WHAT_TO_DO}" if lines else ""
 
 
-def furthest(traces: Sequence[Trace], noise: Array, simulated: Sequence[Array]) -> Event | None:
+def furthest(traces: Sequence[Series], noise: Array, simulated: Sequence[Array]) -> Event | None:
     """Where simulated channels (n x 3 each recording) are furthest off for a moment, in `noise` (3,)."""
     found = None
     for trace, values in zip(traces, simulated, strict=True):

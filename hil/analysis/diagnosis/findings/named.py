@@ -6,10 +6,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from hil.analysis.diagnosis.data.trace import Trace
 from hil.analysis.diagnosis.findings.result import NamedEffect
 from hil.analysis.diagnosis.findings.thresholds import TOLERANCES
-from hil.analysis.missing_effects import TOLERANCE
+from hil.analysis.missing_effects import TOLERANCE, Series
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
@@ -18,7 +17,7 @@ from hil.core.model import EffectUse, Model
 Correction = tuple[float, float, float]
 
 
-def worth_naming(use: EffectUse, traces: Sequence[Trace], least: Mapping[str, float], base: Model) -> bool:
+def worth_naming(use: EffectUse, traces: Sequence[Series], least: Mapping[str, float], base: Model) -> bool:
     """Whether an effect is at least as large as the smallest size worth a name.
 
     An extra dead time adds to the model's own, and is no finding within what that may be off by.

@@ -15,7 +15,6 @@ import numpy as np
 import numpy.typing as npt
 import yaml
 
-from hil.analysis.diagnosis.data.trace import Trace
 from hil.analysis.diagnosis.findings.apart import apart, played
 from hil.analysis.diagnosis.findings.thresholds import (
     DURATION_S,
@@ -30,6 +29,7 @@ from hil.analysis.diagnosis.findings.thresholds import (
     WHEEL_RADIUS_M,
     WORTH_A_PLAN,
 )
+from hil.analysis.missing_effects import Series
 from hil.core.channels import OUTPUTS, unit_of
 from hil.core.errors.wording import multiple, quantity
 from hil.core.model import EffectUse, Model
@@ -111,13 +111,18 @@ def separating_plan(
     return f"{_WORDS[chosen.name]}, up to {peak:.3g} N m: {_difference(levels, noise)}", chosen.text
 
 
-def worth_a_plan(confidence: float, traces: Sequence[Trace]) -> bool:
+def worth_a_plan(confidence: float, traces: Sequence[Series]) -> bool:
     """Whether a rival is likely enough; without torque in the recordings no one knows what a test may ask."""
     return confidence > WORTH_A_PLAN and _largest_torque(traces) > LEAST_TORQUE_NM
 
 
 def plan_within_recordings(
-    one: Model, other: Model, noise: Array, traces: Sequence[Trace], gear_ratio: float, names: tuple[str, str]
+    one: Model,
+    other: Model,
+    noise: Array,
+    traces: Sequence[Series],
+    gear_ratio: float,
+    names: tuple[str, str],
 ) -> tuple[str, str]:
     """The `separating_plan` that asks for no more torque, speed and shaft torque than the recordings have."""
     return separating_plan(
@@ -137,11 +142,11 @@ def plan_file(use: EffectUse) -> str:
     return "_".join(part for part in ("separate", use.id, str(about)) if part) + ".yaml"
 
 
-def _largest_torque(traces: Sequence[Trace]) -> float:
+def _largest_torque(traces: Sequence[Series]) -> float:
     return max(float(np.max(np.abs(t.torque))) for t in traces)
 
 
-def _largest(traces: Sequence[Trace], column: int) -> float:
+def _largest(traces: Sequence[Series], column: int) -> float:
     """Largest value of a channel in the recordings, 0 where it was not measured."""
     return max(float(np.max(np.abs(np.nan_to_num(t.measured[:, column])))) for t in traces)
 

@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.data.gap import CONDITIONS, GapMap
-from hil.analysis.diagnosis.data.trace import Trace, blocks
 from hil.analysis.diagnosis.findings.thresholds import (
     BAND_SHARES,
     CHANNEL_SHARE,
@@ -17,6 +16,7 @@ from hil.analysis.diagnosis.findings.thresholds import (
     LINE_WIDTH,
     WORDS_SEGMENT,
 )
+from hil.analysis.missing_effects import Series, block_means
 from hil.analysis.power_density import power_density
 from hil.core.channels import OUTPUTS
 
@@ -33,7 +33,7 @@ class Where:
 
 
 def where_changed(
-    traces: Sequence[Trace],
+    traces: Sequence[Series],
     noise: Array,
     without: Sequence[Array],
     with_: Sequence[Array],
@@ -66,7 +66,7 @@ def where_changed(
     return Where(channels, (round(float(low), 2), round(float(high), 2)), spread)
 
 
-def band_of_gap(traces: Sequence[Trace], noise: Array, simulated: Sequence[Array], column: int) -> str:
+def band_of_gap(traces: Sequence[Series], noise: Array, simulated: Sequence[Array], column: int) -> str:
     """The line, or the band in Hz, that holds most of what a channel's error is above its noise.
 
     Args:
@@ -78,7 +78,7 @@ def band_of_gap(traces: Sequence[Trace], noise: Array, simulated: Sequence[Array
     for trace, values in zip(traces, simulated, strict=True):
         if trace.has[column]:
             period = trace.dt * trace.block
-            error = (trace.measured - blocks(values, trace.block))[:, [column]]
+            error = (trace.measured - block_means(values, trace.block))[:, [column]]
             density = _density_at(frequency, error / noise[column], period)[:, 0]
             over += len(error) * np.maximum(density - 2.0 * trace.dt, 0.0)  # white noise of variance 1
     share = np.cumsum(over) / max(float(over.sum()), 1e-30)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hil.analysis.diagnosis.data.trace import Trace, trace_of
+from hil.analysis.missing_effects import Series, series_of
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
@@ -29,6 +29,6 @@ def recorded(*effects: EffectUse, seconds: float = 4.0, seed: int = 1) -> Record
     return Recording(channels, Path("one.csv"))
 
 
-def one_trace(*effects: EffectUse, seconds: float = 4.0) -> Trace:
+def one_series(*effects: EffectUse, seconds: float = 4.0) -> Series:
     """The same, made ready."""
-    return trace_of(recorded(*effects, seconds=seconds))
+    return series_of(MODEL, [recorded(*effects, seconds=seconds)])[0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hil.analysis.missing_effects import Outcome, explain_gap
+from hil.analysis.missing_effects import Outcome, explain_gap, series_of
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.slow
 
 def _asked(model: Model, *truth: float, torque_nm: float = 20.0) -> Outcome:
     fit, held = (recording(*truth, torque_nm=torque_nm, seed=seed) for seed in (0, 5))
-    return explain_gap(model, [fit], [held])
+    return explain_gap(model, series_of(model, [fit]), series_of(model, [held]))
 
 
 @pytest.mark.parametrize("model", [base(0.54), base(0.54, 2.17), base(0.27), base(1.62)])
@@ -47,7 +47,7 @@ def test_gravity_beside_dry_friction_is_a_ripple_once_a_turn() -> None:
 @pytest.mark.parametrize("model", [base(0.54, 1.0), base(0.27), base(1.62)])
 def test_gravity_of_an_arm_that_turns_less_than_once_is_named_from_its_encoder(model: Model) -> None:
     """Once a turn is what gravity does: half a period of it does."""
-    found = explain_gap(model, [arm(1)], [arm(2)])
+    found = explain_gap(model, series_of(model, [arm(1)]), series_of(model, [arm(2)]))
     names = {one.id: one.use.values for one in found.effects if one.id != "parameter_mismatch"}
     assert names.keys() == {"coulomb_friction", "motor_order_ripple"}
     assert names["motor_order_ripple"]["order"] == pytest.approx(1.0, abs=0.02)
@@ -69,13 +69,13 @@ def test_a_recording_without_outputs_is_refused() -> None:
     whole = recording(0.54, 2.17, seconds=5.0)
     channels = {name: whole[name] for name in ("time_s", "motor_torque_ref_nm")}
     with pytest.raises(BadInputError, match="none of"):
-        explain_gap(base(0.54), [Recording(channels, whole.source)])
+        series_of(base(0.54), [Recording(channels, whole.source)])
 
 
 def test_a_right_base_with_rounded_readings_has_rounding_alone() -> None:
     fit = recording(0.54, 2.17, noise_rad_s=0.002)
     fit.channels["motor_speed_rad_s"] = np.round(fit["motor_speed_rad_s"] / 0.05) * 0.05
-    found = explain_gap(base(0.54, 2.17), [fit])
+    found = explain_gap(base(0.54, 2.17), series_of(base(0.54, 2.17), [fit]))
     assert [(one.id, one.use.values["channel"]) for one in found.effects] == [
         ("sensor_quantization", "motor_speed_rad_s")
     ]
@@ -84,7 +84,7 @@ def test_a_right_base_with_rounded_readings_has_rounding_alone() -> None:
 
 def test_a_late_torque_and_outputs_that_are_late_alike_are_one_class() -> None:
     late = chirp(0.01, EffectUse("actuator_lag", {"time_constant_s": 0.008}))
-    found = explain_gap(Model("two_inertia", NUMBERS), [late])
+    found = explain_gap(Model("two_inertia", NUMBERS), series_of(Model("two_inertia", NUMBERS), [late]))
     named = next(one for one in found.effects if one.id == "actuator_lag")
     assert any(name.count("sensor_lag") == 3 for name in named.alike)
     assert named.use.values["time_constant_s"] == pytest.approx(0.008, rel=0.05)
@@ -93,7 +93,7 @@ def test_a_late_torque_and_outputs_that_are_late_alike_are_one_class() -> None:
 def test_dry_friction_is_named_from_an_encoder_alone() -> None:
     """Readings in steps of 2 mrad; no speed was recorded. The same number as from a speed without noise."""
     fit, held = (_by_encoder(recording(0.54, 2.17, 1.39, noise_rad_s=0.0, seed=seed)) for seed in (0, 5))
-    found = explain_gap(base(0.54), [fit], [held])
+    found = explain_gap(base(0.54), series_of(base(0.54), [fit]), series_of(base(0.54), [held]))
     assert [one.id for one in found.effects if one.id != "parameter_mismatch"] == ["coulomb_friction"]
     friction = found.effects[0]
     assert friction.confidence > 0.95

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hil.analysis.missing_effects import explain_gap
+from hil.analysis.missing_effects import explain_gap, series_of
 from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._fit import linearised
 from hil.analysis.missing_effects._hypothesis import Hypothesis
@@ -61,7 +61,7 @@ def test_a_late_shaft_torque_of_a_rigid_axle_is_no_dead_time() -> None:
     torque = 30.0 * np.sign(np.sin(2.0 * np.pi * 0.3 * time)) + 10.0 * np.sin(np.pi * time**2)
     skewed = EffectUse("channel_skew", {"channel": OUTPUTS[2], "delay_s": 0.34e-3})
     recording = driven(model.with_effects(skewed), torque, 0.005)
-    found = explain_gap(model, [recording])
+    found = explain_gap(model, series_of(model, [recording]))
     assert [one.id for one in found.effects] == ["channel_skew"]
     assert found.effects[0].use.values["channel"] == OUTPUTS[2]
     assert found.effects[0].use.values["delay_s"] == pytest.approx(0.34e-3, abs=0.02e-3)

@@ -1,4 +1,4 @@
-"""Recordings made ready: blocks, angles, and from which octave on a periodic torque says anything."""
+"""Recordings made ready: blocks, angles, notes, and from which octave on a periodic torque says anything."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.missing_effects._series import Series, series_of
-from hil.core.channels import INPUT, TIME
-from hil.core.model import Model
+from hil.analysis.missing_effects._series import FIT_RATE_HZ, Series, block_means, series_of
+from hil.core.channels import INPUT, MOTOR_ANGLE, OUTPUTS, TIME, WHEEL_ANGLE
+from hil.core.errors import BadInputError
+from hil.core.model import Model, TransferFunction
 from hil.core.recording import Recording
 
 _MASS = Model(
@@ -51,3 +52,73 @@ def test_of_a_torque_that_does_not_repeat_all_octaves_count() -> None:
 def test_a_torque_that_repeats_from_the_lowest_octave_on_counts_whole() -> None:
     square = np.tile(np.repeat([5.0, -5.0], 2000), 4)
     assert _series(square).lowest_hz == 0.0
+
+
+def _recorded(**channels: np.ndarray) -> Recording:
+    time = 1e-3 * np.arange(4000, dtype=float)
+    torque = 5.0 * np.sin(20.0 * time)
+    speed = np.cumsum(torque) * 2e-3
+    return Recording({TIME: time, INPUT: torque, OUTPUTS[0]: speed, **channels}, Path("one.csv"))
+
+
+def test_blocks_are_means_at_the_rate_of_fits() -> None:
+    (one,) = series_of(_MASS, [_recorded()])
+    assert one.rate_hz == pytest.approx(FIT_RATE_HZ)
+    assert one.measured[3, 0] == pytest.approx(one.samples[12:16, 0].mean())
+    assert block_means(np.arange(10.0)[:, None], 4)[:, 0] == pytest.approx([1.5, 5.5])
+
+
+def test_jittered_stamps_are_put_on_an_even_grid_and_noted() -> None:
+    recording = _recorded()
+    jitter = np.random.default_rng(2).uniform(-2e-4, 2e-4, 4000)
+    (one,) = series_of(_MASS, [_recorded(**{TIME: recording[TIME] + jitter})])
+    assert one.dt == pytest.approx(1e-3, rel=1e-3)
+    assert one.notes[0].startswith("time stamps are uneven: put on a grid of 1")
+    assert one.source == "one.csv"
+
+
+@pytest.mark.parametrize(
+    ("every", "count", "words"),
+    [(30, 4000, "has 134 samples"), (1, 120, "has 120 samples")],
+)
+def test_too_little_is_refused_with_what_is_needed(every: int, count: int, words: str) -> None:
+    channels = {name: values[:count:every] for name, values in _recorded().channels.items()}
+    with pytest.raises(BadInputError, match=words):
+        series_of(_MASS, [Recording(channels, Path("one.csv"))])
+
+
+def test_a_slow_recording_is_refused() -> None:
+    time = 0.03 * np.arange(400, dtype=float)
+    slow = {TIME: time, INPUT: np.sin(time), OUTPUTS[0]: np.cos(time)}
+    with pytest.raises(BadInputError, match="too slow for a driveline"):
+        series_of(_MASS, [Recording(slow, Path("one.csv"))])
+
+
+def test_a_channel_with_nearly_the_right_name_is_noted() -> None:
+    recording = _recorded(wheel_speed=np.ones(4000))
+    assert series_of(_MASS, [recording])[0].notes == (
+        "has no wheel_speed_rad_s, and 'wheel_speed' is not used: if it is that, rename it",
+    )
+
+
+def test_an_angle_stands_for_a_speed_and_is_noted() -> None:
+    recording = _recorded()
+    speed = recording.channels.pop(OUTPUTS[0])
+    recording.channels[MOTOR_ANGLE] = np.cumsum(speed) * 1e-3
+    (one,) = series_of(_MASS, [recording])
+    assert one.notes == ("motor_speed_rad_s is what motor_angle_rad turns by within 4 ms",)
+    assert one.samples[100:-100, 0] == pytest.approx(speed[100:-100], abs=0.05 * np.ptp(speed))
+
+
+def test_outputs_without_a_function_are_not_compared() -> None:
+    function = {OUTPUTS[0]: TransferFunction((1.0,), (0.5, 0.0))}
+    model = Model("transfer_function", transfer_functions=function)
+    (one,) = series_of(model, [_recorded(**{OUTPUTS[2]: np.ones(4000)})])
+    assert one.has.tolist() == [True, False, False]
+    assert any(OUTPUTS[2] in note for note in one.notes)
+    for name in (OUTPUTS[1], WHEEL_ANGLE):
+        lacking = Recording(
+            {**_recorded().without([OUTPUTS[0]]).channels, name: np.ones(4000)}, Path("a.csv")
+        )
+        with pytest.raises(BadInputError, match="no function for any"):
+            series_of(model, [lacking])

@@ -7,11 +7,11 @@ import pytest
 
 from hil.analysis.diagnosis.data.gap import BANDS_HZ, CONDITIONS, channel_gaps, conditions_of, gap_map
 from hil.core.channels import OUTPUTS
-from tests.hil.analysis.diagnosis.one_recording import one_trace
+from tests.hil.analysis.diagnosis.one_recording import one_series
 
 
 def test_a_gap_is_error_over_what_the_channel_does() -> None:
-    trace = one_trace()
+    trace = one_series()
     spread = np.std(trace.samples, axis=0)
     gaps = channel_gaps([trace], 0.1 * spread, [trace.samples - 0.5 * spread])
     assert list(gaps) == list(OUTPUTS)
@@ -20,14 +20,14 @@ def test_a_gap_is_error_over_what_the_channel_does() -> None:
 
 
 def test_an_error_stands_in_its_band() -> None:
-    trace = one_trace()
+    trace = one_series()
     wave = np.sin(2 * np.pi * 12.0 * np.arange(len(trace.samples)) * trace.dt)
     found = gap_map([trace], np.ones(3), [trace.samples - wave[:, None]])
     assert [BANDS_HZ[i] for i in np.argmax(found.by_band[0], axis=1)] == [(10.0, 15.0)] * 3
 
 
 def test_recordings_that_lack_a_channel_do_not_thin_its_error_out() -> None:
-    trace = one_trace()
+    trace = one_series()
     without = replace(
         trace, measured=trace.measured * [1.0, np.nan, 1.0], samples=trace.samples * [1.0, np.nan, 1.0]
     )
@@ -40,7 +40,7 @@ def test_recordings_that_lack_a_channel_do_not_thin_its_error_out() -> None:
 
 
 def test_every_sample_has_one_condition() -> None:
-    trace = one_trace()
+    trace = one_series()
     assert np.all(conditions_of(trace.samples, trace.torque, trace.dt).sum(axis=0) == 1.0)
 
 

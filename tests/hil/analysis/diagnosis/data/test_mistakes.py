@@ -1,41 +1,114 @@
-"""A mistake is named where the model knows the recording without it, and not as it stands."""
+"""A mistake is named where it is far likelier than none, from a base that is near or far."""
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from hil.analysis.diagnosis.data.mistakes import mistaken
-from hil.analysis.diagnosis.data.noise import noise_levels
-from hil.analysis.diagnosis.data.trace import Trace, trace_of
-from tests.hil.analysis.diagnosis.one_recording import MODEL, recorded
+from hil.analysis.missing_effects import proven_noise, series_of
+from hil.core.model import EffectUse, Model
+from hil.core.recording import Recording
+from hil.plant import simulate
+from tests.hil.analysis import paper_plant
+from tests.hil.analysis.diagnosis.one_recording import MODEL, NOISE
 
 RPM = 60.0 / (2.0 * np.pi)
+MOTOR, WHEEL, SHAFT = NAMES = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
+TORQUE = "motor_torque_ref_nm"
+INERTIAS = [name for name in MODEL.parameters if name.endswith("inertia")]
+HEAVY = MODEL.with_parameters(**{name: 3.0 * MODEL.parameters[name] for name in INERTIAS})
+LIGHT = MODEL.with_parameters(**{name: 0.5 * MODEL.parameters[name] for name in INERTIAS})
 
 
-def with_outputs(*factors: float, torque: float = 1.0) -> Trace:
-    one = recorded(seconds=8.0)
-    names = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
-    channels = {name: one[name] * factor for name, factor in zip(names, factors, strict=True)}
-    channels["motor_torque_ref_nm"] = torque * one["motor_torque_ref_nm"]
-    return trace_of(dataclasses.replace(one, channels={**one.channels, **channels}))
+def chirp(*effects: EffectUse, seed: int = 1) -> Recording:
+    """Slow enough that both speeds turn together for a while."""
+    torque = paper_plant.chirp(20.0, 0.2, 20.0, 40.0)
+    rng = np.random.default_rng(seed)
+    shown = simulate(MODEL.with_effects(*effects), torque, 1e-3)
+    noisy = {n: shown[n] + rng.normal(0.0, level, len(torque)) for n, level in zip(NAMES, NOISE, strict=True)}
+    return Recording(
+        {"time_s": 1e-3 * np.arange(len(torque), dtype=float), TORQUE: torque, **noisy}, Path("one.csv")
+    )
 
 
-def said(trace: Trace) -> str:
-    found = mistaken(MODEL, [trace], noise_levels([trace]))
+def changed(**channels: np.ndarray | float) -> Recording:
+    """With channels that are replaced, or multiplied by a number."""
+    one = chirp()
+    new = {n: one[n] * by if isinstance(by, float) else by for n, by in channels.items()}
+    return dataclasses.replace(one, channels={**one.channels, **new})
+
+
+def said(recording: Recording, model: Model = MODEL) -> str:
+    series = series_of(model, [recording])
+    found = mistaken(model, series, proven_noise(series, {}))
     return "" if found is None else found.what
 
 
+@pytest.mark.parametrize("model", [MODEL, HEAVY, LIGHT])
 @pytest.mark.parametrize(
-    ("trace", "what"),
+    ("factors", "what"),
     [
-        (with_outputs(1.0, 1.0, 1.0), ""),
-        (with_outputs(RPM, 1.0, 1.0), "motor_speed_rad_s looks like rpm"),
-        (with_outputs(1.0, 1.0, -1.0), "shaft_torque_nm looks inverted"),
-        (with_outputs(1.0, 1.0, 1e-3), "shaft_torque_nm looks like kN m"),
-        (with_outputs(1.0, 1.0, 1.0, torque=-1.0), "motor_torque_ref_nm looks inverted"),
+        ({}, ""),
+        ({MOTOR: -1.0}, f"{MOTOR} looks inverted"),
+        ({WHEEL: -1.0}, f"{WHEEL} looks inverted"),
+        ({SHAFT: -1.0}, f"{SHAFT} looks inverted"),
+        ({MOTOR: -1.0, WHEEL: -1.0}, f"{MOTOR} and {WHEEL} look inverted"),
+        ({TORQUE: -1.0}, f"{TORQUE} looks inverted"),
+        ({MOTOR: RPM}, f"{MOTOR} looks like rpm"),
+        ({WHEEL: RPM}, f"{WHEEL} looks like rpm"),
+        ({SHAFT: 1e-3}, f"{SHAFT} looks like kN m"),
+        ({TORQUE: 1e-3}, f"{TORQUE} looks like kN m"),
+        ({TORQUE: 1e-3, SHAFT: 1e-3}, f"{TORQUE} and {SHAFT} look like kN m"),
     ],
 )
-def test_a_mistake_is_named(trace: Trace, what: str) -> None:
-    assert said(trace).startswith(what)
-    assert bool(said(trace)) is bool(what)
+def test_a_mistake_is_named_from_any_base(factors: dict[str, float], what: str, model: Model) -> None:
+    assert said(changed(**factors), model).startswith(what)
+    assert bool(said(changed(**factors), model)) is bool(what)
+
+
+def test_both_speeds_in_rpm_are_named_by_an_inertia_that_is_known() -> None:
+    assert said(changed(**{MOTOR: RPM, WHEEL: RPM})) == f"{MOTOR} and {WHEEL} look like rpm"
+
+
+def test_columns_that_are_swapped_are_named() -> None:
+    one = chirp()
+    assert said(changed(**{MOTOR: one[WHEEL], WHEEL: one[MOTOR]})) == f"{MOTOR} and {WHEEL} look swapped"
+
+
+@pytest.mark.parametrize("factor", [0.4, 2.5])
+def test_another_gear_ratio_is_named_with_both(factor: float) -> None:
+    ratio = MODEL.parameters["gear_ratio"]
+    text = said(changed(**{WHEEL: factor}))
+    assert text.startswith("the gear ratio looks wrong: motor over wheel speed is ")
+    assert float(text.split(" is ")[1].split(",")[0]) == pytest.approx(ratio / factor, rel=0.02)
+    assert f"the model has {ratio:.3g}" in text
+
+
+def test_another_unit_of_the_shaft_torque_is_named_with_its_factor() -> None:
+    assert said(changed(**{SHAFT: 0.05})).startswith(f"{SHAFT} is 0.05")
+
+
+@pytest.mark.parametrize("channel", NAMES)
+def test_a_channel_of_noise_alone_is_dead_where_the_others_move(channel: str) -> None:
+    level = dict(zip(NAMES, NOISE, strict=True))[channel]
+    noise = np.random.default_rng(3).normal(0.0, level, 20_000)
+    assert (
+        said(changed(**{channel: noise})) == f"{channel} looks dead: it shows only noise while the axle moves"
+    )
+
+
+@pytest.mark.parametrize(
+    "effect",
+    [
+        EffectUse("torque_saturation", {"limit_nm": 3.0}),
+        EffectUse("coulomb_friction", {"torque_nm": 15.0}),
+        EffectUse("backlash", {"half_gap_rad": 0.03}),
+        EffectUse("dead_time", {"extra_delay_s": 0.02}),
+        EffectUse("sensor_gain", {"channel": WHEEL, "gain": 1.2}),
+    ],
+)
+def test_a_missing_effect_is_no_mistake(effect: EffectUse) -> None:
+    recording = chirp(effect)
+    assert [said(recording, model) for model in (MODEL, HEAVY, LIGHT)] == ["", "", ""]

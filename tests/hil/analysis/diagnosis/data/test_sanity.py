@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data.noise import noise_levels
-from hil.analysis.diagnosis.data.sanity import examine, examined
+from hil.analysis.diagnosis.data.sanity import examine
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
@@ -16,21 +15,21 @@ from hil.plant import simulate
 from tests.hil.analysis.diagnosis.one_recording import MODEL, NOISE, recorded
 
 
-def test_good_recordings_come_with_their_noise() -> None:
-    found = examined(MODEL, [recorded()])
-    assert np.array_equal(found.noise, noise_levels(found.traces))
-    assert found.notes == examine(MODEL, [recorded()])[1] == []
+def test_good_recordings_come_without_a_note() -> None:
+    series, notes = examine(MODEL, [recorded()])
+    assert [one.source for one in series] == ["one.csv"]
+    assert notes == []
 
 
 def test_nothing_is_examined_where_nothing_is_given() -> None:
-    assert examined(MODEL, []).traces == []
+    assert examine(MODEL, []) == ([], [])
 
 
 def test_an_inverted_channel_is_named() -> None:
     one = recorded(seconds=8.0)
     turned = dataclasses.replace(one, channels={**one.channels, "shaft_torque_nm": -one["shaft_torque_nm"]})
     with pytest.raises(BadInputError, match="shaft_torque_nm looks inverted"):
-        examined(MODEL, [turned])
+        examine(MODEL, [turned])
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
@@ -46,7 +45,7 @@ def test_a_speed_that_drifts_slowly_is_not_inverted(sign: float) -> None:
     speed = channels["wheel_speed_rad_s"]
     channels["wheel_speed_rad_s"] = speed + sign * 0.4 * np.std(speed) * np.sin(2 * np.pi * time / 25.0)
     told = {**one.channels, **channels, "motor_torque_ref_nm": torque}
-    examined(MODEL, [dataclasses.replace(one, channels=told)])
+    examine(MODEL, [dataclasses.replace(one, channels=told)])
 
 
 @pytest.mark.parametrize("channel", ["motor_speed_rad_s", "wheel_speed_rad_s"])
@@ -64,7 +63,7 @@ def test_a_drift_as_large_as_the_motion_is_no_wrong_speed(channel: str, phase: f
     swing = np.sin(2 * np.pi * time / 50.0 + phase)
     channels[channel] = channels[channel] + 3.0 * np.std(channels[channel]) * (swing - swing[0])
     told = {**one.channels, **channels, "motor_torque_ref_nm": torque}
-    examined(MODEL, [dataclasses.replace(one, channels=told)])
+    examine(MODEL, [dataclasses.replace(one, channels=told)])
 
 
 @pytest.mark.parametrize("factor", [-1.0, 0.4, 9.55])
@@ -76,7 +75,7 @@ def test_a_wrong_speed_is_refused_though_it_drifts(factor: float) -> None:
     wheel = clean["wheel_speed_rad_s"] + 0.3 * np.std(clean["wheel_speed_rad_s"]) * np.sin(time / 8.0)
     told = {**one.channels, **clean, "wheel_speed_rad_s": factor * wheel, "motor_torque_ref_nm": torque}
     with pytest.raises(BadInputError, match="inverted|gear ratio looks wrong|looks like rpm"):
-        examined(MODEL, [dataclasses.replace(one, channels=told)])
+        examine(MODEL, [dataclasses.replace(one, channels=told)])
 
 
 def test_a_speed_that_rests_beside_a_drifting_one_is_not_dead() -> None:
@@ -87,7 +86,7 @@ def test_a_speed_that_rests_beside_a_drifting_one_is_not_dead() -> None:
     told = {**one.channels, **simulate(MODEL, torque, 1e-3), "motor_torque_ref_nm": torque}
     told["wheel_speed_rad_s"] = told["wheel_speed_rad_s"] + rng.normal(0.0, 0.05, len(time))
     told["motor_speed_rad_s"] = told["motor_speed_rad_s"] + 16.0 * np.sin(2 * np.pi * time / 50.0)
-    examined(MODEL, [dataclasses.replace(one, channels=told)])
+    examine(MODEL, [dataclasses.replace(one, channels=told)])
 
 
 @pytest.mark.parametrize("first", [True, False])
@@ -96,7 +95,7 @@ def test_a_recording_in_rpm_is_named_beside_a_good_one(first: bool) -> None:
     wheels = {name: one[name] * 60.0 / (2.0 * np.pi) for name in ("motor_speed_rad_s", "wheel_speed_rad_s")}
     wrong = dataclasses.replace(one, channels={**one.channels, **wheels}, source=Path("rpm.csv"))
     with pytest.raises(BadInputError, match="look like rpm") as refused:
-        examined(MODEL, [wrong, good] if first else [good, wrong])
+        examine(MODEL, [wrong, good] if first else [good, wrong])
     assert refused.value.where == "rpm.csv"
 
 
@@ -115,9 +114,9 @@ def _limited(unit: float, model: Model = MODEL, limit_nm: float = 25.0) -> Recor
 
 
 def test_a_torque_that_its_limit_holds_is_in_no_other_unit() -> None:
-    assert examined(MODEL, [_limited(1.0)]).traces
-    with pytest.raises(BadInputError, match="check the unit of the channel"):
-        examined(MODEL, [_limited(1.0 / MODEL.parameters["gear_ratio"])])
+    assert examine(MODEL, [_limited(1.0)])[0]
+    with pytest.raises(BadInputError, match="looks like kN m"):
+        examine(MODEL, [_limited(1e-3)])
 
 
 def test_a_rotor_that_takes_most_of_its_torque_itself_leaves_the_shaft_little() -> None:
@@ -125,6 +124,6 @@ def test_a_rotor_that_takes_most_of_its_torque_itself_leaves_the_shaft_little() 
     ratio = MODEL.parameters["gear_ratio"]
     light = {"wheel_inertia": 0.1, "vehicle_inertia": 0.2 * MODEL.parameters["motor_inertia"] * ratio**2}
     small = MODEL.with_parameters(**light)
-    assert examined(small, [_limited(1.0, small, 1000.0)]).traces
-    with pytest.raises(BadInputError, match="check the unit of the channel"):
-        examined(small, [_limited(1e-3, small, 1000.0)])
+    assert examine(small, [_limited(1.0, small, 1000.0)])[0]
+    with pytest.raises(BadInputError, match="looks like kN m"):
+        examine(small, [_limited(1e-3, small, 1000.0)])

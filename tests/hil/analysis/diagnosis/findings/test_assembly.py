@@ -10,7 +10,7 @@ import pytest
 from hil.analysis.diagnosis import INTERRUPTED, Diagnosis, diagnose
 from hil.analysis.diagnosis.asked import Asked
 from hil.analysis.diagnosis.findings.assembly import diagnosis_of
-from hil.analysis.missing_effects import explain_gap
+from hil.analysis.missing_effects import explain_gap, series_of
 from hil.core.effects import EFFECTS
 from tests.hil.analysis.missing_effects.turning_mass import base, recording
 
@@ -68,7 +68,7 @@ def test_no_more_time_than_asked_for_is_taken() -> None:
 
 def test_an_effect_smaller_than_what_is_worth_a_name_is_a_correction() -> None:
     fit = recording(0.54, 2.17, 1.39, 0.0, torque_nm=_TORQUE_NM, seed=0)
-    outcome = explain_gap(base(0.54, 2.17), [fit])
+    outcome = explain_gap(base(0.54, 2.17), series_of(base(0.54, 2.17), [fit]))
     named = diagnosis_of(outcome, base(0.54, 2.17), Asked({}, {}))
     small = diagnosis_of(outcome, base(0.54, 2.17), Asked({}, {"coulomb_friction": 2.0}))
     assert [one.use.id for one in named.effects] == ["coulomb_friction"]

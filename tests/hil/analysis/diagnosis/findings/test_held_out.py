@@ -8,7 +8,7 @@ from hil.analysis.diagnosis.findings.held_out import Event, HeldOut, furthest
 from hil.analysis.diagnosis.findings.result import Verdict
 from hil.analysis.diagnosis.findings.thresholds import CHANNEL_NOISES
 from hil.core.channels import OUTPUTS
-from tests.hil.analysis.diagnosis.one_recording import NOISE, one_trace
+from tests.hil.analysis.diagnosis.one_recording import NOISE, one_series
 
 ONCE = Event(OUTPUTS[2], "steps", 12.3, 8.0)
 
@@ -47,7 +47,7 @@ def test_where_the_fitted_ones_are_not_explained_there_is_nothing_to_add() -> No
 
 
 def test_a_limit_that_is_met_once_is_the_moment_that_is_furthest_off() -> None:
-    trace = one_trace(seconds=8.0)
+    trace = one_series(seconds=8.0)
     shown = trace.samples.copy()
     noise = np.array(NOISE)
     calm = furthest([trace], noise, [shown + np.random.default_rng(0).normal(size=shown.shape) * noise])

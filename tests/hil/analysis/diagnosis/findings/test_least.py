@@ -5,7 +5,7 @@ import pytest
 from hil.analysis.diagnosis.findings.named import worth_naming
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
-from tests.hil.analysis.diagnosis.one_recording import MODEL, one_trace
+from tests.hil.analysis.diagnosis.one_recording import MODEL, one_series
 
 
 @pytest.mark.parametrize(
@@ -25,10 +25,10 @@ from tests.hil.analysis.diagnosis.one_recording import MODEL, one_trace
     ],
 )
 def test_each_effect_has_a_size_worth_naming(use: EffectUse, worth: bool) -> None:
-    assert worth_naming(use, [one_trace()], {}, MODEL) is worth
+    assert worth_naming(use, [one_series()], {}, MODEL) is worth
 
 
 def test_a_user_sets_another_size() -> None:
     skew = EffectUse("channel_skew", {"channel": OUTPUTS[2], "delay_s": 9.5e-6})
-    assert worth_naming(skew, [one_trace()], {"channel_skew": 5e-6}, MODEL)
-    assert not worth_naming(skew, [one_trace()], {"channel_skew": 1e-5}, MODEL)
+    assert worth_naming(skew, [one_series()], {"channel_skew": 5e-6}, MODEL)
+    assert not worth_naming(skew, [one_series()], {"channel_skew": 1e-5}, MODEL)

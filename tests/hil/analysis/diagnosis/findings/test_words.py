@@ -6,13 +6,13 @@ import pytest
 from hil.analysis.diagnosis.data.gap import gap_map
 from hil.analysis.diagnosis.findings.words import band_of_gap, where_changed
 from hil.core.channels import OUTPUTS
-from tests.hil.analysis.diagnosis.one_recording import NOISE, one_trace
+from tests.hil.analysis.diagnosis.one_recording import NOISE, one_series
 
 LEVELS = np.array(NOISE)
 
 
 def test_a_wave_in_one_channel_is_placed() -> None:
-    trace = one_trace()
+    trace = one_series()
     wave = np.zeros_like(trace.samples)
     wave[:, 2] = 30.0 * np.sin(2 * np.pi * 10.0 * np.arange(len(wave)) * trace.dt)
     maps = [gap_map([trace], LEVELS, [s]) for s in (trace.samples - wave, trace.samples)]
@@ -23,7 +23,7 @@ def test_a_wave_in_one_channel_is_placed() -> None:
 
 @pytest.mark.parametrize("frequency_hz", [7.0, 13.0])
 def test_a_line_that_stays_is_called_one(frequency_hz: float) -> None:
-    trace = one_trace(seconds=16.0)
+    trace = one_series(seconds=16.0)
     time = np.arange(len(trace.samples)) * trace.dt
     noise = np.random.default_rng(3).normal(0.0, 1.0, len(time))
     shown = trace.samples.copy()
@@ -34,7 +34,7 @@ def test_a_line_that_stays_is_called_one(frequency_hz: float) -> None:
 
 
 def test_a_gap_that_is_broad_lies_between_two_frequencies() -> None:
-    trace = one_trace(seconds=16.0)
+    trace = one_series(seconds=16.0)
     time = np.arange(len(trace.samples)) * trace.dt
     shown = trace.samples.copy()
     shown[:, 0] += 5.0 * NOISE[0] * np.sin(2 * np.pi * (2.0 * time + 0.5 * time**2))  # 2 to 18 Hz

@@ -1,4 +1,4 @@
-"""Channels that freeze for a while are refused; what stands still or is held is not."""
+"""Channels that are dead, clipped or frozen are refused; what stands still or is held is not."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from hil.analysis.diagnosis import examine
-from hil.analysis.diagnosis.data.frozen import refuse_frozen
-from hil.analysis.diagnosis.data.trace import trace_of
+from hil.analysis.diagnosis.data.held import moves, refuse_held
+from hil.analysis.diagnosis.data.thresholds import FROZEN_S
+from hil.analysis.missing_effects import Series, proven_noise, series_of
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model, parameter_names
 from hil.core.recording import Recording
@@ -87,7 +88,8 @@ def test_a_wheel_that_a_dyno_holds_is_data(amplitude: float) -> None:
     parameters = {name: BASE[name] for name in parameter_names("two_inertia")}
     held = Model("two_inertia", {**parameters, "vehicle_inertia": 1e6})
     recording = chirp(held, amplitude=amplitude)
-    refuse_frozen(trace_of(recording), np.array(LEVELS), held)
+    series = series_of(held, [recording])
+    refuse_held(held, series, proven_noise(series, {}))
     assert examine(held, [recording])[0]
 
 
@@ -124,3 +126,71 @@ def test_a_wheel_that_rests_beside_a_drifting_motor_speed_is_data() -> None:
     time = recording["time_s"]
     recording.channels[MOTOR] = recording[MOTOR] + 16.0 * np.sin(2 * np.pi * time / 50.0)
     assert examine(MODEL, [recording])[0]
+
+
+def one_series(**changed: np.ndarray) -> Series:
+    recording = chirp()
+    recording.channels.update(changed)
+    return series_of(MODEL, [recording])[0]
+
+
+def refused(*series: Series, beside: tuple[Series, ...] = ()) -> str:
+    try:
+        refuse_held(MODEL, list(series), proven_noise([*series, *beside], {}), beside)
+    except BadInputError as error:
+        return error.what
+    return ""
+
+
+def test_a_good_recording_is_not_refused() -> None:
+    assert refused(one_series()) == ""
+
+
+@pytest.mark.parametrize("channel", CHANNELS)
+def test_a_channel_that_reads_one_value_as_the_others_move_is_dead(channel: str) -> None:
+    assert (
+        refused(one_series(**{channel: np.full(20_000, 3.0)}))
+        == f"{channel} looks dead: it reads 3 throughout"
+    )
+
+
+@pytest.mark.parametrize("channel", CHANNELS)
+def test_a_channel_that_ends_at_its_range_is_clipped(channel: str) -> None:
+    values = chirp()[channel]
+    top = float(np.median(values) + 0.5 * np.ptp(values) / 2)
+    assert refused(one_series(**{channel: np.minimum(values, top)})).startswith(f"{channel} looks clipped at")
+
+
+@pytest.mark.parametrize(("lasts_s", "frozen"), [(0.2 * FROZEN_S, False), (2.0 * FROZEN_S, True)])
+def test_a_telegram_that_was_lost_is_data_and_noise_that_stops_is_not(lasts_s: float, frozen: bool) -> None:
+    values, samples = chirp()[MOTOR].copy(), round(1e3 * lasts_s)
+    values[5000 : 5000 + samples] = values[5000]
+    assert bool(refused(one_series(**{MOTOR: values}))) is frozen
+
+
+@pytest.mark.parametrize("push", [0.2, 4.0])
+def test_a_speed_alone_may_stand_still_but_not_under_more_torque_than_moved_it(push: float) -> None:
+    """Dry friction, or a rounding, holds what little torque does; more would move it again."""
+    moving = chirp().without([WHEEL, SHAFT])
+    still = {**moving.channels, TORQUE: push * moving[TORQUE], MOTOR: np.full(20_000, moving[MOTOR][0])}
+    first, second = (series_of(MODEL, [one])[0] for one in (moving, Recording(still, Path("still.csv"))))
+    assert bool(refused(first, second)) is (push > 1.0)
+    assert bool(refused(second, beside=(first,))) is (push > 1.0)
+
+
+def test_a_wheel_speed_in_steps_of_more_than_it_moves_is_data() -> None:
+    rounded = np.round(chirp(amplitude=100.0, speed=20.0)[WHEEL] / 3.0) * 3.0
+    moving = one_series(**{WHEEL: rounded})
+    assert refused(one_series(**{WHEEL: np.full(20_000, 9.0)}), beside=(moving,)) == ""
+
+
+def test_a_wheel_speed_of_two_levels_is_data() -> None:
+    rounded = np.where(chirp()[WHEEL] > 10.0, 12.0, 0.0)
+    assert len(np.unique(rounded)) == 2
+    assert refused(one_series(**{WHEEL: rounded})) == ""
+
+
+def test_what_moves_is_more_than_noise() -> None:
+    series = one_series(**{WHEEL: np.random.default_rng(0).normal(0.0, 0.02, 20_000)})
+    noise = proven_noise([series], {})
+    assert [moves(series, column, noise) for column in range(3)] == [True, False, True]

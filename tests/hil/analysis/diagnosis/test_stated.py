@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import lfilter
 
 from hil.analysis.diagnosis import diagnose
-from hil.analysis.diagnosis.data.noise import stated_noise
+from hil.analysis.diagnosis.asked import stated_noise
 from hil.core.channels import OUTPUTS
 from hil.core.recording import read_recording, write_recording
 from tests.hil.analysis.diagnosis.one_recording import MODEL, recorded
