@@ -32,7 +32,9 @@ class RunsWanted(_Data):
         None, description="ended, or queued if it has not ended, at or after"
     )
     until: datetime.datetime | None = Field(None, description="ended, or queued if it has not ended, before")
-    text: _Words = Field("", description="part of plan, title, device or person, whatever the case")
+    text: _Words = Field(
+        "", description="part of plan, title, device, person, reason of the end or a note, whatever the case"
+    )
     criterion: _Words = Field("", description="only runs that have it; its values are given, too")
     above: Number | None = Field(None, description="value of the criterion at least, in its unit")
     below: Number | None = Field(None, description="value of the criterion at most, in its unit")

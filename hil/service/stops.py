@@ -9,7 +9,9 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+import time
 from collections import defaultdict
+from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
 
 _MOST_ROWS = 16  # of one stop, until it is reset
 _LATCHED_WITHIN_S = 5.0
+_LATE_S = 1.0
 
 logger = logging.getLogger(__name__)
 
@@ -90,7 +93,7 @@ class Stops:
         if service.own(stopped.bench) is None:
             service.agents.stop_in_emergency(stopped.bench, asked)
             self._remember(stopped.bench, asked)
-        self._write_down(stopped.bench, asked, stopped.role)
+        self._write_down(stopped.bench, asked, stopped.role, stopped.at_s)
         service.changed(stopped.bench)
 
     def _remember(self, bench: str, asked: EmergencyAsked) -> None:
@@ -104,7 +107,8 @@ class Stops:
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
-    def _write_down(self, bench: str, asked: EmergencyAsked, role: str) -> None:
+    def _write_down(self, bench: str, asked: EmergencyAsked, role: str, at_s: float | None = None) -> None:
+        """A row in the log; a service that stood still writes late, and says when it was asked for."""
         own, one = self._service.own(bench), (asked.by, asked.origin)
         latch = own.stopped() if own is not None else ""
         if self._rows.get(bench, (None,))[0] != latch:
@@ -115,6 +119,8 @@ class Stops:
             return
         rows.add(one)
         detail = f"from {asked.origin}, {asked.way}"
+        if at_s is not None and time.time() - at_s > _LATE_S:
+            detail += f", asked for at {datetime.fromtimestamp(at_s, UTC).isoformat(timespec='milliseconds')}"
         self._service.deferred_audit.add(asked.by, role, "emergency stop", bench, detail)
 
 

@@ -153,6 +153,7 @@ class StopPostProcess:
                 role=asked.role,
                 origin=asked.origin,
                 way=asked.way,
+                at_s=asked.at_s,
                 run=line.run if line is not None else None,
                 latched=latched,
                 problem=problem,

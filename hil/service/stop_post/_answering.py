@@ -38,13 +38,14 @@ class RefusedError(Exception):
 
 @dataclass(frozen=True)
 class Asked:
-    """A stop that is asked for: of a bench, or of all; by whom, from where, how."""
+    """A stop that is asked for: of a bench, or of all; by whom, from where, how, when (s of the epoch)."""
 
     bench: str | None
     by: str
     role: str
     origin: str
     way: StopWay
+    at_s: float
 
 
 @dataclass
@@ -84,7 +85,7 @@ class Answering:
         owner = self._owner(headers)
         by, role = (owner.name, owner.role) if owner is not None else (f"somebody at {address}", "")
         way: StopWay = "page" if "origin" in headers else "api"
-        return Asked(one[1] if one else None, by, role, address, way)
+        return Asked(one[1] if one else None, by, role, address, way, time.time())
 
     def allowed_origin(self, request: bytes) -> str:
         """The origin of a page that may read the answer; '' if there is none."""

@@ -72,7 +72,7 @@ class Up(_Data):
 
 
 class Stopped(_Data):
-    """Somebody has asked for a stop.
+    """Somebody has asked for a stop, at `at_s` of the epoch.
 
     `run`: the run that was run; `latched`: it is on the disk; `problem`: why it is not.
     """
@@ -83,6 +83,7 @@ class Stopped(_Data):
     role: str
     origin: str
     way: StopWay
+    at_s: float
     run: int | None
     latched: bool
     problem: str = ""

@@ -12,7 +12,7 @@ from sqlalchemy.orm import InstrumentedAttribute, load_only, sessionmaker
 from hil.api_schemas.run_list import FoundRun, FoundRuns, RunChoices, RunsWanted
 from hil.service.store._books import asked_apart
 from hil.service.store._runs import RUN_COLUMNS, run_data
-from hil.service.store._tables import CriterionRow, RunRow, TagRow
+from hil.service.store._tables import CriterionRow, NoteRow, RunRow, TagRow
 
 #: Criteria are offered of so many newest runs: going through those of all runs would take a second.
 _NEWEST = 200
@@ -35,7 +35,7 @@ _FILTERS: dict[str, InstrumentedAttribute[Any]] = {
     "verdict": RunRow.verdict,
     "requested_by": RunRow.requested_by,
 }
-_SEARCHED = (RunRow.plan, RunRow.title, RunRow.dut, RunRow.requested_by)
+_SEARCHED = (RunRow.plan, RunRow.title, RunRow.dut, RunRow.requested_by, RunRow.reason)
 #: Columns of a run as the API has it: not the plan's text.
 _SHOWN = [column for column in vars(RunRow).values() if getattr(column, "key", "") in RUN_COLUMNS]
 _MOMENT = func.coalesce(RunRow.ended_at, RunRow.queued_at)
@@ -139,7 +139,9 @@ def _conditions(wanted: RunsWanted) -> list[ColumnElement[bool]]:
     if wanted.until is not None:
         found.append(wanted.until > _MOMENT)
     if wanted.text:
-        found.append(or_(*(column.icontains(wanted.text, autoescape=True) for column in _SEARCHED)))
+        noted = select(NoteRow.run).where(NoteRow.text.icontains(wanted.text, autoescape=True))
+        own = (column.icontains(wanted.text, autoescape=True) for column in _SEARCHED)
+        found.append(or_(*own, RunRow.id.in_(noted)))
     if wanted.criterion and wanted.above is not None:
         found.append(CriterionRow.value >= wanted.above)
     if wanted.criterion and wanted.below is not None:

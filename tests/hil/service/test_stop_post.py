@@ -135,7 +135,7 @@ def test_a_latch_that_failed_is_tried_again_at_the_next_stop(folder: str, tmp_pa
     latches = Latches(done.put)
     stops = tmp_path / "stops" if folder else None
     latches.know({"sim": OwnBench(file="sim", stops=str(stops or ""))})
-    asked = Asked("sim", "anna", "operator", "10.0.0.7", "api")
+    asked = Asked("sim", "anna", "operator", "10.0.0.7", "api", 0.0)
     bench = Bench("sim", stops)
     if stops is not None:
         stops.write_text("in the way")

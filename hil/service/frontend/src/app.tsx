@@ -13,7 +13,7 @@ import { Aside, Menu } from "./shell/menu.tsx";
 import { Palette, paletteOpen } from "./shell/palette.tsx";
 import { QuestionWindow } from "./shell/question.tsx";
 import { SignIn, signOut } from "./shell/sign-in.tsx";
-import { benchInSight, StopButton, UntakenStop } from "./shell/stop.tsx";
+import { benchInSight, StopButton, StopTrouble } from "./shell/stop.tsx";
 import { useStore } from "./store.ts";
 import { FieldMessage } from "./ui/field-message.tsx";
 import { kindInWords } from "./ui/kinds.ts";
@@ -54,7 +54,7 @@ export function App(): JSX.Element {
         {who.state === "in" ? <Menu place={place} /> : null}
       </header>
       <main id="main" tabIndex={-1}>
-        <UntakenStop />
+        <StopTrouble />
         <LostNotice />
         {who.state === "in" ? <StoppedBenches place={place} /> : null}
         <Refusal of={refusal} />

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
+import signal
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -46,18 +49,19 @@ def test_a_click_on_the_stop_behind_the_palette_stops(page: playwright.Page, the
     with page.expect_response("**/emergency-stop"):
         page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
     expect(page.get_by_role("dialog")).to_have_count(0)
-    assert there.get("/benches/sim")["state"] == "emergency_stop"
+    assert is_stopped(there)
 
 
 def test_the_tab_key_leads_from_the_palette_to_the_stop(page: playwright.Page, there: Served) -> None:
     to(page, there, "benches/sim")
+    expect(page.get_by_role("heading", level=1)).to_be_visible()  # the page listens
     page.keyboard.press("Control+k")
     expect(page.get_by_role("combobox", name="Find a plan")).to_be_focused()
     page.keyboard.press("Tab")
     expect(page.locator("button.stop")).to_be_focused()
     with page.expect_response("**/emergency-stop"):
         page.keyboard.press("Enter")
-    assert there.get("/benches/sim")["state"] == "emergency_stop"
+    assert is_stopped(there)
 
 
 def test_a_stop_that_nobody_takes_is_not_delivered(page: playwright.Page, there: Served) -> None:
@@ -68,6 +72,47 @@ def test_a_stop_that_nobody_takes_is_not_delivered(page: playwright.Page, there:
     expect(stop).to_contain_text("NOT delivered")
     notice = page.get_by_role("alert").filter(has_text="NOT delivered")
     expect(notice).to_contain_text(re.compile("does not answer. It is tried again until .* Use the stop at"))
+
+
+def test_a_stop_that_the_stop_post_alone_has_taken_says_that_the_service_stands_still(
+    page: playwright.Page, there: Served
+) -> None:
+    """The button said 'sent' for a moment, and the page went on as if nothing had happened."""
+    to(page, there, "benches/sim")
+    page.wait_for_timeout(500)  # the page knows the stop post
+    os.kill(there.process.pid, signal.SIGSTOP)
+    try:
+        page.locator("button.stop").click()
+        notice = page.get_by_role("alert").filter(has_text="The service does not answer")
+        expect(notice).to_contain_text(
+            re.compile("was delivered at .*: tests are being stopped.*Look at the bench")
+        )
+        expect(page.locator("button.stop")).to_contain_text("delivered")
+        assert latches_of(there)
+        page.wait_for_timeout(1500)
+    finally:
+        os.kill(there.process.pid, signal.SIGCONT)
+    expect(notice).to_have_count(0)
+    rows = [row["detail"] for row in there.get("/audit") if row["action"] == "emergency stop"]
+    assert any("asked for at" in detail for detail in rows)
+
+
+def is_stopped(there: Served) -> bool:
+    """Once the service has heard of a stop that its stop post took."""
+    for _ in range(100):
+        if there.get("/benches/sim")["state"] == "emergency_stop":
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def latches_of(there: Served) -> list[Path]:
+    """Stops on the service's disk, once there is one."""
+    for _ in range(100):
+        if found := list((there.data / "emergency-stops").glob("*.json")):
+            return found
+        time.sleep(0.05)
+    return []
 
 
 def test_a_stop_that_nobody_has_taken_in_ten_minutes_is_not_tried_any_longer(
@@ -93,7 +138,7 @@ def test_a_stop_that_nobody_has_taken_in_ten_minutes_is_not_tried_any_longer(
         page.locator("button.stop").click()  # and the next one is taken
     page.clock.run_for(1100)
     expect(notice).to_have_count(0)
-    assert there.get("/benches/sim")["state"] == "emergency_stop"
+    assert is_stopped(there)
 
 
 @pytest.mark.parametrize("refusals", [("403 (Forbidden)", "401 (Unauthorized)")])

@@ -103,19 +103,20 @@ export async function findStopPost(): Promise<void> {
 }
 
 // Both ways at the same moment; the first that has taken it is enough. A flooded service closes connections: a way
-// on which no one answers is tried again. Throws the refusal, or null where no one has answered.
-export async function stopNow(bench: string): Promise<void> {
+// on which no one answers is tried again. `service` settles once the service itself has answered, or is given up.
+// Throws the refusal, or null where no one has answered.
+export async function stopNow(bench: string): Promise<{ service: Promise<void> }> {
   const path = bench ? `/benches/${encodeURIComponent(bench)}/emergency-stop` : "/emergency-stop";
   const control = new AbortController(), late = control.signal; // also for a way that is never answered
   const timer = setTimeout(() => control.abort(), STOP_MS);
-  const ways = [insist(() => ask("POST", path, undefined, late), late)];
+  const service = insist(() => ask("POST", path, undefined, late), late), ways = [service];
   if (stopUrl) ways.push(insist(() => byStopPost(path, late), late));
+  void Promise.allSettled(ways).then(() => clearTimeout(timer));
   try {
     await Promise.any(ways);
+    return { service };
   } catch (error) {
     throw (error as AggregateError).errors.find((one) => one instanceof Refused && one.status) ?? null;
-  } finally {
-    clearTimeout(timer);
   }
 }
 

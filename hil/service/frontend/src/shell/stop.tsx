@@ -22,30 +22,33 @@ export function useStopOf(bench: string, known: boolean | null): void {
 
 export const stopScope = (bench: string): string => (bench ? t("{bench} only", { bench }) : t("all benches"));
 
-// A stop that was asked for and that the service has not taken for so long that a person must know: it is still being
-// tried, it was refused, or it was given up.
-interface Untaken {
-  state: "tried" | "refused" | "given up";
-  untilMs: number; // when it ends to be tried, or has ended
+// What a person must know of a stop that was asked for: it is not taken and still being tried, it was refused, or it
+// was given up; or the stop post has taken it and the service, whose states the page shows, does not answer.
+interface Trouble {
+  state: "tried" | "refused" | "given up" | "taken alone";
+  atMs: number; // when it ends to be tried, has ended, or was taken
   refused: Refused | null;
 }
 
 const LATE_MS = 1000;
-const untakenStop = new Store<Untaken | null>(null);
+const stopTrouble = new Store<Trouble | null>(null);
 
 let pressed = 0; // an earlier stop that ends late says nothing of the newest
 
 export async function pressStop(bench: string): Promise<boolean> {
   dismiss(); // what was asked before a stop is asked anew after it
   const mine = ++pressed, untilMs = Date.now() + STOP_MS;
-  const put = (untaken: Untaken | null) => { if (mine === pressed) untakenStop.value = untaken; };
-  const late = setTimeout(() => put({ state: "tried", untilMs, refused: null }), LATE_MS);
+  const put = (trouble: Trouble | null) => { if (mine === pressed) stopTrouble.value = trouble; };
+  const late = setTimeout(() => put({ state: "tried", atMs: untilMs, refused: null }), LATE_MS);
   try {
-    await stopNow(bench);
+    const { service } = await stopNow(bench), takenMs = Date.now();
     put(null);
+    const silent = setTimeout(() => put({ state: "taken alone", atMs: takenMs, refused: null }), LATE_MS);
+    const answered = () => { clearTimeout(silent); put(null); };
+    service.then(answered, answered);
     return true;
   } catch (error) {
-    put(error instanceof Refused ? { state: "refused", untilMs: Date.now(), refused: error } : { state: "given up", untilMs: Date.now(), refused: null });
+    put(error instanceof Refused ? { state: "refused", atMs: Date.now(), refused: error } : { state: "given up", atMs: Date.now(), refused: null });
     return false;
   } finally {
     clearTimeout(late);
@@ -65,14 +68,14 @@ export function focusStop(close: () => void): void {
 }
 
 export function StopButton(): JSX.Element {
-  const bench = useStore(benchInSight), untaken = useStore(untakenStop);
+  const bench = useStore(benchInSight), trouble = useStore(stopTrouble);
   const [state, setState] = useState<"" | "sending" | "taken">("");
   const stop = async () => {
     setState("sending");
     setState(await pressStop(bench) ? "taken" : "");
     setTimeout(() => setState((one) => (one === "taken" ? "" : one)), 1500);
   };
-  const words = untaken ? t("NOT delivered") : state === "sending" ? t("sending") : state === "taken" ? t("sent") : stopScope(bench);
+  const words = trouble ? (trouble.state === "taken alone" ? t("delivered") : t("NOT delivered")) : state === "sending" ? t("sending") : state === "taken" ? t("sent") : stopScope(bench);
   return (
     <button type="button" class="stop" onClick={() => void stop()}>
       {t("Emergency stop")} <small>{words}</small>
@@ -80,20 +83,21 @@ export function StopButton(): JSX.Element {
   );
 }
 
-export function UntakenStop(): JSX.Element | null {
-  const untaken = useStore(untakenStop);
-  if (!untaken) return null;
+export function StopTrouble(): JSX.Element | null {
+  const trouble = useStore(stopTrouble);
+  if (!trouble) return null;
   return (
     <div class="alarm" role="alert">
-      <p>{wordsOf(untaken)} {t("Use the stop at the bench.")}</p>
-      {untaken.refused ? <p><English>{untaken.refused.message}</English>{untaken.refused.fix ? <>{"; "}<English>{untaken.refused.fix}</English></> : null}</p> : null}
-      {untaken.state === "tried" ? null : <button type="button" onClick={() => { untakenStop.value = null; }}>{t("Hide this message")}</button>}
+      <p>{wordsOf(trouble)} {trouble.state === "taken alone" ? t("Look at the bench.") : t("Use the stop at the bench.")}</p>
+      {trouble.refused ? <p><English>{trouble.refused.message}</English>{trouble.refused.fix ? <>{"; "}<English>{trouble.refused.fix}</English></> : null}</p> : null}
+      {trouble.state === "tried" ? null : <button type="button" onClick={() => { stopTrouble.value = null; }}>{t("Hide this message")}</button>}
     </div>
   );
 }
 
-function wordsOf({ state, untilMs }: Untaken): string {
-  const time = clockTime(untilMs);
+function wordsOf({ state, atMs }: Trouble): string {
+  const time = clockTime(atMs);
+  if (state === "taken alone") return t("The emergency stop was delivered at {time}: tests are being stopped. The service does not answer, so that this page shows what was before.", { time });
   if (state === "refused") return t("The emergency stop was NOT delivered: the service refused it at {time}.", { time });
   if (state === "given up") return t("The emergency stop was NOT delivered: the service did not answer. It has not been tried since {time}.", { time });
   return t("The emergency stop is NOT delivered: the service does not answer. It is tried again until {time}.", { time });

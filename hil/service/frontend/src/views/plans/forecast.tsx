@@ -11,6 +11,7 @@ import { Scroll } from "../../ui/parts.tsx";
 import { Criteria } from "../criteria.tsx";
 
 const WAIT_MS = 400;
+const LONG_MS = 5000;
 
 interface Wanted {
   plan: string;
@@ -58,7 +59,7 @@ export function useForecast(wanted: Wanted | null, wrong = ""): Foreseen {
 export function ForecastShown({ of: { forecast, error, wrong }, criteria = false }: { of: Foreseen; criteria?: boolean }): JSX.Element {
   if (wrong) return <p class="bad">{wrong}</p>;
   if (error) return <p class="bad"><English>{error}</English></p>;
-  if (!forecast) return <p class="quiet">{t("Predicting duration and peaks …")}</p>;
+  if (!forecast) return <Predicting />;
   const failing = forecast.criteria.filter((one) => one.verdict === "fail").length;
   const loads = Object.entries(forecast.bus_loads ?? {});
   return (
@@ -79,4 +80,13 @@ export function ForecastShown({ of: { forecast, error, wrong }, criteria = false
       </Scroll>
     </>
   );
+}
+
+function Predicting(): JSX.Element {
+  const [long, setLong] = useState(false);
+  useEffect(() => {
+    const timer = setTimeout(() => setLong(true), LONG_MS);
+    return () => clearTimeout(timer);
+  }, []);
+  return <p class="quiet">{t("Predicting duration and peaks …")}{long ? ` ${t("The first prediction on a machine compiles the simulation: a minute or two.")}` : ""}</p>;
 }

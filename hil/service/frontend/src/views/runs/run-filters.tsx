@@ -26,7 +26,7 @@ export function RunFilters({ query, onChange }: { query: RunsQuery; onChange: (q
   const clear = () => onChange({ ...query, filters: Object.fromEntries(FILTERS.map((name) => [name, ""])) as Record<Filter, string>, text: "", since: "", until: "", criterion: "", above: "", below: "" });
   return (
     <form class="filters small" role="search" aria-label={t("Runs")} onSubmit={(event) => event.preventDefault()}>
-      <Typed label={t("Words")} type="search" value={query.text} onChange={(text) => onChange({ ...query, text })} />
+      <Typed label={t("Words")} type="search" hint={t("plan, title, DUT, person, reason, note")} value={query.text} onChange={(text) => onChange({ ...query, text })} />
       {FILTERS.map((name) => (
         <Choice key={name} label={NAMES[name]} value={query.filters[name]} all={offered[name]} onChange={(value) => onChange({ ...query, filters: { ...query.filters, [name]: value } })} />
       ))}
@@ -54,7 +54,7 @@ function Choice({ label, value, all, onChange }: { label: string; value: string;
 }
 
 // Asked for when somebody has stopped typing.
-function Typed({ label, type, value, onChange }: { label: string; type: "search" | "date" | "number"; value: string; onChange: (value: string) => void }): JSX.Element {
+function Typed({ label, type, value, onChange, hint = "" }: { label: string; type: "search" | "date" | "number"; value: string; hint?: string; onChange: (value: string) => void }): JSX.Element {
   const [text, setText] = useState(value), latest = useRef(onChange);
   latest.current = onChange; // another filter may have been typed meanwhile
   useEffect(() => setText(value), [value]);
@@ -63,7 +63,7 @@ function Typed({ label, type, value, onChange }: { label: string; type: "search"
     const timer = setTimeout(() => latest.current(text), WAIT_MS);
     return () => clearTimeout(timer);
   }, [text]);
-  if (type === "search") return <LimitedField label={label} most={LONGEST_WORDS} search value={text} onText={setText} />;
+  if (type === "search") return <LimitedField label={label} most={LONGEST_WORDS} search placeholder={hint} title={hint} value={text} onText={setText} />;
   return type === "date" ? <Day label={label} value={text} onText={setText} /> : <label class="field">{label}<NumberInput value={text} onText={setText} /></label>;
 }
 
