@@ -136,7 +136,7 @@ def parts(found: Diagnosis) -> list[Part]:
             "Rms of measured minus simulated as a share of the rms of the measured channel around its "
             "mean. The noise floor is the same for the noise that is proven: by the spectrum above all "
             f"modes, by the distance of readings, or as stated.{_what_stays(found)}",
-            _gaps(found),
+            _gaps(found)[:-1],  # the last stands on the first page
             figures=(_bars(found),),
         ),
         Part(

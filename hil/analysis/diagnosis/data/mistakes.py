@@ -38,7 +38,7 @@ from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import multiple
 from hil.core.model import Model
-from hil.plant import gear_ratio_of, pack, sensor_of, simulate_many
+from hil.plant import gear_ratio_of, is_regulated, pack, rounding_step, sensor_of, simulate_many
 
 Array = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
@@ -57,7 +57,7 @@ _SIZES = np.arange(-90, 91) * _STEP  # logs of factors that are tried
 
 @dataclass(frozen=True)
 class _Mistake:
-    """What may have been mistaken: factors that mend torque and outputs, and speeds that are exchanged.
+    """What may have been mistaken: factors that mend torque and outputs, and an order that mends columns.
 
     Pairs in `free` have any size; of a channel that is `dead` only noise was recorded.
     """
@@ -66,12 +66,14 @@ class _Mistake:
     fix: str
     torque: float = 1.0
     outputs: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    exchanged: bool = False
+    order: tuple[int, int, int] = (0, 1, 2)
     free: tuple[int, ...] = ()
     dead: int | None = None
 
 
 _NONE = _Mistake("", "")
+_AS_THEY_ARE = _NONE.order
+_ORDERS = (_AS_THEY_ARE, (1, 0, 2), (2, 1, 0), (0, 2, 1))
 _FALLS = "looks inverted: it falls when torque pushes"
 _SIGN = f"invert the sign of the channel, or of {INPUT}"
 _TO_RAD_S, _TO_NM = "multiply it by 2π/60", "multiply it by 1000"
@@ -84,7 +86,10 @@ _MISTAKES = (
     _Mistake(f"{_SHAFT} looks inverted", _SIGN, outputs=(1.0, 1.0, -1.0)),
     _Mistake(f"{INPUT} looks inverted: the axle does the opposite", "invert the sign of it", torque=-1.0),
     _Mistake(f"{_SPEEDS} look inverted", "invert the sign of both", outputs=(-1.0, -1.0, 1.0)),
-    _Mistake(f"{_SPEEDS} look swapped", "exchange the two columns", exchanged=True),
+    *(
+        _Mistake(f"{OUTPUTS[one]} and {OUTPUTS[other]} look swapped", "exchange the two columns", order=order)
+        for (one, other), order in zip(((0, 1), (0, 2), (1, 2)), _ORDERS[1:], strict=True)
+    ),
     _Mistake(f"{_MOTOR} looks like rpm", _TO_RAD_S, outputs=(1.0 / _RPM, 1.0, 1.0)),
     _Mistake(f"{_WHEEL} looks like rpm", _TO_RAD_S, outputs=(1.0, 1.0 / _RPM, 1.0)),
     _Mistake(f"{_SPEEDS} look like rpm", "multiply both by 2π/60", outputs=(1.0 / _RPM, 1.0 / _RPM, 1.0)),
@@ -121,7 +126,7 @@ def mistaken(model: Model, series: Sequence[Series], noise: Array) -> BadInputEr
     if gains[best] < np.log(LIKELIER):
         return None
     found, ratio = _MISTAKES[best], gear_ratio_of(model) or 1.0
-    sizes = np.exp(seen[1.0][0].middle_sizes())
+    sizes = np.exp(seen[1.0][_AS_THEY_ARE].middle_sizes())
     what = found.what.format(*(multiple(size) for size in sizes), gear=sizes[_GEAR] * ratio, ratio=ratio)
     if alike[:2] == [0, 1]:  # no torque tells which
         what = f"either {_MOTOR} or {_WHEEL} looks inverted"
@@ -159,11 +164,14 @@ class _Pairs:
         return np.asarray(np.sum(weight * self.size, axis=1) / np.maximum(np.sum(weight, axis=1), _LEAST))
 
 
-def _gain(given: tuple[_Pairs, _Pairs], mended: tuple[_Pairs, _Pairs], mistake: _Mistake) -> float:
+_ByOrder = dict[tuple[int, int, int], _Pairs]
+
+
+def _gain(given: _ByOrder, mended: _ByOrder, mistake: _Mistake) -> float:
     """Log likelihood by a mistake over that by none, of the same octaves."""
-    other = mended[1] if mistake.exchanged else mended[0]
-    known = given[0].known | other.known if mistake.exchanged else given[0].known
-    none = _log_likelihood(replace(given[0], known=known), _NONE)
+    own, other = given[_AS_THEY_ARE], mended[mistake.order]
+    known = own.known if mistake.order == _AS_THEY_ARE else own.known | other.known
+    none = _log_likelihood(replace(own, known=known), _NONE)
     return _log_likelihood(replace(other, known=known), mistake) - none
 
 
@@ -191,12 +199,17 @@ def _by_size(pairs: _Pairs, pair: int, factor: float, mistake: _Mistake) -> Arra
 
 
 def _log_dead(pairs: _Pairs, pair: int, column: int) -> float:
-    """Log likelihood of a pair of which a channel reads noise alone where a speed that goes with it moves."""
+    """Log likelihood of a pair of which a channel reads noise alone where a speed that goes with it moves.
+
+    A speed goes with the other where that turns further than play and twist allow, or as the model says.
+    """
     if column == 2:
         moves = np.asarray((pairs.known[:2] & ~pairs.silent[1, :2]).any(axis=0), dtype=bool)
     else:
-        moves = pairs.silent[1 - column, _GEAR] & pairs.turns[_GEAR]
-    dead = moves if pair == _GEAR else pairs.silent[1, pair] & moves
+        other = 1 - column
+        follows = pairs.known[other] & (1.0 - pairs.correlation[other] < ALIKE)
+        moves = (pairs.silent[other, _GEAR] & pairs.turns[_GEAR]) | (pairs.silent[1, column] & follows)
+    dead = moves if pair == _GEAR else np.asarray(pairs.silent[1, pair] & moves, dtype=bool)
     return float(np.sum(_log_alike(np.where(dead[pairs.known[pair]], 0.0, 1.0), pair)))
 
 
@@ -207,37 +220,47 @@ def _log_alike(unlike: Array, pair: int) -> Array:
     return np.asarray(np.log((1.0 - ANYTHING) * small + ANYTHING))
 
 
-def _pairs(model: Model, series: Sequence[Series], noise: Array, torque: float) -> tuple[_Pairs, _Pairs]:
-    """Of recordings with the torque times a factor: columns as they are, and both speeds exchanged."""
+def _pairs(model: Model, series: Sequence[Series], noise: Array, torque: float) -> _ByOrder:
+    """Of recordings with the torque times a factor, by orders of columns."""
     sums = np.sum([_sums(one, model, np.nan_to_num(noise), torque) for one in series], axis=0)
-    return _Pairs.of(sums[0]), _Pairs.of(sums[1])
+    return {order: _Pairs.of(each) for order, each in zip(_ORDERS, sums, strict=True)}
 
 
 def _sums(one: Series, model: Model, noise: Array, torque: float) -> Array:
-    """What `_Pairs.of` asks for, 2 x 6 x pairs x bands: columns as they are, and both speeds exchanged."""
-    ratio = gear_ratio_of(model) or 1.0
+    """What `_Pairs.of` asks for, orders of columns x 6 x pairs x bands."""
+    ratio, regulated = gear_ratio_of(model) or 1.0, is_regulated(model)
     lines = _Lines.of(one)
+    # readings of two levels move by less than their steps
+    tells = one.has & [len(np.unique(values)) > 2 for values in one.samples.T]
     y, whole = lines.transformed(np.nan_to_num(one.measured))
-    x, shown = lines.transformed(_simulated(model, one, torque * one.torque, ratio))
-    x[:, 2], y[:, 2] = shown[:, 2], whole[:, 2]  # a mean torque says something, a mean speed how it began
-    noise = np.where(one.of_angle, 0.0, noise)  # slow octaves of an encoder have none
-    rigid = _rigid(one, lines, ratio * x[:, 1], x[:, 0])
-    found = np.zeros((2, 6, _GEAR + 1, _BANDS))
-    orders = ((0, 1, 2), (1, 0, 2)) if one.has[:2].all() else ((0, 1, 2),)
-    for row, (first, second, third) in zip(found, orders, strict=False):
-        for pair, column in enumerate((first, second, third)):
-            if one.has[column]:
-                row[:5, pair] = lines.sums(x[:, pair], y[:, column], 0.0, noise[column])
-        of_speeds = lines.sums(ratio * whole[:, second], whole[:, first], ratio * noise[second], noise[first])
-        row[:5, _GEAR] = rigid * of_speeds
-        row[5] = lines.turned(whole[:, 0] / ratio, whole[:, 1]) > _apart_rad(model, one, ratio)
+    levels = np.where(one.of_angle, 0.0, noise).tolist()  # slow octaves of an encoder have none
+    powers = [lines.noise(level, one.samples[:, column]) for column, level in enumerate(levels)]
+    turns = lines.turned(whole[:, 0] / ratio, whole[:, 1]) > _apart_rad(model, one, ratio)
+    if not regulated:
+        x, shown = lines.transformed(_simulated(model, one, torque * one.torque, ratio))
+        rigid = _rigid(lines, ratio * x[:, 1], x[:, 0])
+        # a mean torque says something, a mean speed only how it began
+        x[:, 2], y[:, 2] = shown[:, 2], whole[:, 2]
+    found = np.zeros((len(_ORDERS), 6, _GEAR + 1, _BANDS))
+    for row, order in zip(found, _ORDERS, strict=True):
+        if not all(tells[column] for place, column in enumerate(order) if place != column):
+            continue
+        first, second, _ = order
+        for pair, column in enumerate(() if regulated else order):
+            if tells[column]:
+                row[:3, pair], row[4, pair] = lines.sums(x[:, pair], y[:, column]), powers[column]
+        if tells[[first, second]].all():
+            together = turns if regulated else rigid
+            row[:3, _GEAR] = together * lines.sums(ratio * whole[:, second], whole[:, first])
+            row[3, _GEAR], row[4, _GEAR] = ratio**2 * powers[second], powers[first]
+        row[5] = turns
     return found
 
 
-def _rigid(one: Series, lines: _Lines, wheel: Lines, motor: Lines) -> Flags:
-    """Octaves in which both speeds go together by the model; none where one was not recorded."""
-    xx, yy, xy, _, _ = lines.sums(wheel, motor, 0.0, 0.0)
-    return np.asarray((xx + yy - 2.0 * xy <= ALIKE_SPEEDS * (xx + yy)) & one.has[:2].all(), dtype=bool)
+def _rigid(lines: _Lines, wheel: Lines, motor: Lines) -> Flags:
+    """Octaves in which both speeds go together by the model."""
+    xx, yy, xy = lines.sums(wheel, motor)
+    return np.asarray((xx + yy - 2.0 * xy <= ALIKE_SPEEDS * (xx + yy)), dtype=bool)
 
 
 def _apart_rad(model: Model, one: Series, ratio: float) -> float:
@@ -268,12 +291,16 @@ class _Lines:
         about, whole = (np.fft.rfft(some * self.window[:, None], axis=0) for some in (values - trend, values))
         return about, np.where((self.band == 0)[:, None], whole, about)
 
-    def sums(self, x: Lines, y: Lines, noise_x: float, noise_y: float) -> Array:
-        """Over the lines of each octave: |x|², |y|², Re x*y, noise in x and in y; 5 x bands."""
-        square = float(self.window @ self.window)
-        noise = (np.full(len(x), square * level**2) for level in (noise_x, noise_y))
-        rows = (np.abs(x) ** 2, np.abs(y) ** 2, (x.conj() * y).real, *noise)
+    def sums(self, x: Lines, y: Lines) -> Array:
+        """Over the lines of each octave: |x|², |y|², Re x*y; 3 x bands."""
+        rows = (np.abs(x) ** 2, np.abs(y) ** 2, (x.conj() * y).real)
         return np.stack([np.bincount(self.band, row, _BANDS + 1)[:_BANDS] for row in rows])
+
+    def noise(self, level: float, values: Array) -> Array:
+        """Power of a channel's noise in each octave, (bands,); that of rounded readings may be in any one."""
+        count = np.bincount(self.band, minlength=_BANDS + 1)[:_BANDS]
+        lines = np.maximum(count, len(self.band)) if rounding_step(values) > 0.0 else count
+        return np.asarray(float(self.window @ self.window) * level**2 * lines)
 
     def turned(self, *speeds: Lines) -> Array:
         """Rms angle in each octave by that of some speeds that turns further, (bands,)."""

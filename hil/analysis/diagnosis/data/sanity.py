@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +11,7 @@ import numpy.typing as npt
 from hil.analysis.diagnosis.data.held import moves, refuse_held
 from hil.analysis.diagnosis.data.mistakes import mistaken
 from hil.analysis.diagnosis.data.thresholds import SLOW_S, SPEEDS_UP
-from hil.analysis.missing_effects import Series, proven_noise, series_of
+from hil.analysis.missing_effects import Series, block_means, proven_noise, series_of
 from hil.analysis.plausible import refuse_implausible
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
@@ -39,18 +40,23 @@ def examine(
     if not series:
         return [], []
     noise = proven_noise([*series, *beside], {})
-    refuse_held(model, series, noise, beside)
-    notes = _refuse_motionless(series, noise)
-    if not is_regulated(
-        model
-    ):  # else what turns the wheels is not recorded: motion and torque may go any way
-        files = list(dict.fromkeys(one.source for one in series))
-        _refuse_each(
-            (file, mistaken(model, [s for s in series if s.source == file], noise)) for file in files
-        )
-        if len(files) > 1 and (together := mistaken(model, series, noise)) is not None:
-            raise together
+    seen = [_as_recorded(one) for one in series]
+    refuse_held(model, seen, noise, [_as_recorded(one) for one in beside])
+    notes = _refuse_motionless(model, seen, noise)
+    files = list(dict.fromkeys(one.source for one in seen))
+    _refuse_each((file, mistaken(model, [s for s in seen if s.source == file], noise)) for file in files)
+    if len(files) > 1 and (together := mistaken(model, seen, noise)) is not None:
+        raise together
     return series, notes
+
+
+def _as_recorded(one: Series) -> Series:
+    """With a speed that is given to the model as a reading like others."""
+    if not one.given.any():
+        return one
+    return replace(
+        one, measured=block_means(one.samples, one.block), given=np.zeros(len(OUTPUTS), dtype=bool)
+    )
 
 
 def _refuse_each(found: Iterable[tuple[str, BadInputError | None]]) -> None:
@@ -66,19 +72,29 @@ def _kind(error: BadInputError) -> str:
     return error.what.split(":")[0]
 
 
-def _refuse_motionless(series: Sequence[Series], noise: Array) -> list[str]:
+def _refuse_motionless(model: Model, series: Sequence[Series], noise: Array) -> list[str]:
     """A note for each recording that tells nothing; without any that does there is nothing to explain."""
+    driven = is_regulated(model)  # by what is not recorded
     moved = [any(moves(one, column, noise) for column in range(len(OUTPUTS))) for one in series]
     for one, moving in zip(series, moved, strict=True):
-        if moving and np.ptp(one.torque) == 0.0 and one.load is None and not _slows_down(one, noise):
+        if (
+            moving
+            and not driven
+            and np.ptp(one.torque) == 0.0
+            and one.load is None
+            and not _slows_down(one, noise)
+        ):
             raise BadInputError(
                 f"{INPUT} looks dead: it reads {one.torque[0]:g} throughout, but the axle accelerates",
                 where=one.source,
                 fix="repair the channel, or omit the recording",
             )
     if not any(moved):
+        names = [name for column, name in enumerate(OUTPUTS) if any(one.has[column] for one in series)]
         raise BadInputError(
-            "no recording shows motion, so there is nothing to diagnose", fix="record a chirp or steps"
+            f"no recording shows motion, so there is nothing to diagnose: noise alone in {', '.join(names)}",
+            where=", ".join(dict.fromkeys(one.source for one in series)),
+            fix="check that the channel is connected, and record a chirp or steps that move the axle",
         )
     still = [one.name for one, moving in zip(series, moved, strict=True) if not moving]
     return [f"{name}: no motion, not used" for name in still]

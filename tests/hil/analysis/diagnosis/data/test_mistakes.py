@@ -6,9 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hil.analysis.diagnosis import examine
 from hil.analysis.diagnosis.data.mistakes import mistaken
 from hil.analysis.missing_effects import proven_noise, series_of
-from hil.core.model import EffectUse, Model
+from hil.core.errors import BadInputError
+from hil.core.model import EffectUse, Model, parameter_names
 from hil.core.recording import Recording
 from hil.plant import simulate
 from tests.hil.analysis import paper_plant
@@ -112,3 +114,41 @@ def test_a_channel_of_noise_alone_is_dead_where_the_others_move(channel: str) ->
 def test_a_missing_effect_is_no_mistake(effect: EffectUse) -> None:
     recording = chirp(effect)
     assert [said(recording, model) for model in (MODEL, HEAVY, LIGHT)] == ["", "", ""]
+
+
+@pytest.mark.parametrize("channel", [MOTOR, WHEEL])
+def test_a_shaft_torque_and_a_speed_that_are_swapped_are_named(channel: str) -> None:
+    one = chirp()
+    text = said(changed(**{channel: one[SHAFT], SHAFT: one[channel]}))
+    assert text == f"{channel} and {SHAFT} look swapped"
+
+
+def test_a_speed_of_noise_is_dead_where_the_other_follows_the_model() -> None:
+    """Too little motion for play and twist, and one channel without noise."""
+    quiet = chirp()
+    quiet.channels[WHEEL] = simulate(MODEL, quiet[TORQUE], 1e-3)[WHEEL]
+    quiet.channels[MOTOR] = np.random.default_rng(3).normal(0.0, 0.05, 20_000)
+    assert said(quiet) == f"{MOTOR} looks dead: it shows only noise while the axle moves"
+
+
+@pytest.mark.parametrize("step", [0.5, 2.0, 20.0])
+def test_a_wheel_speed_in_coarse_steps_is_not_dead(step: float) -> None:
+    one = chirp()
+    assert said(changed(**{WHEEL: np.round(one[WHEEL] / step) * step})) == ""
+
+
+def test_of_wheels_that_turn_as_recorded_both_speeds_are_compared() -> None:
+    driven = Model("two_inertia", {n: MODEL.parameters[n] for n in parameter_names("two_inertia")})
+    driven = dataclasses.replace(driven, load_input=WHEEL)
+    time = 1e-3 * np.arange(20_000, dtype=float)
+    wheel = 10.0 * np.sin(0.5 * time) + 5.0 * np.sin(3.0 * time)
+    ratio = driven.parameters["gear_ratio"]
+    rng = np.random.default_rng(1)
+    channels = {"time_s": time, TORQUE: 20.0 * np.sin(time), WHEEL: wheel + rng.normal(0.0, 0.02, 20_000)}
+    channels[MOTOR] = ratio * wheel + rng.normal(0.0, 0.2, 20_000)
+    good = Recording(channels, Path("driven.csv"))
+    assert examine(driven, [good])[1] == []
+    with pytest.raises(BadInputError, match="either .* looks inverted"):
+        examine(driven, [Recording({**channels, MOTOR: -channels[MOTOR]}, Path("driven.csv"))])
+    with pytest.raises(BadInputError, match=f"{MOTOR} looks dead: it reads 0 throughout"):
+        examine(driven, [Recording({**channels, MOTOR: 0.0 * time}, Path("driven.csv"))])
