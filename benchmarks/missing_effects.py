@@ -257,18 +257,19 @@ def _own() -> Iterator[Case]:
 
 def _bases(model: Model) -> dict[str, Model]:
     """A base as it is, without drag, and of half and three times the inertia."""
-
-    def times(factor: float) -> Model:
-        inertias = [name for name in model.parameters if name.endswith("inertia")]
-        return model.with_parameters(**{name: factor * model.parameters[name] for name in inertias})
-
     still = {name: 0.0 for name in model.parameters if name.endswith(("drag", "damping"))}
     return {
         "as it is": model,
         "no drag": model.with_parameters(**still),
-        "half J": times(0.5),
-        "3 J": times(3.0).with_parameters(**still),
+        "half J": with_inertias(model, 0.5),
+        "3 J": with_inertias(model, 3.0).with_parameters(**still),
     }
+
+
+def with_inertias(model: Model, factor: float) -> Model:
+    """A model whose inertias are all that many times what they are."""
+    inertias = [name for name in model.parameters if name.endswith("inertia")]
+    return model.with_parameters(**{name: factor * model.parameters[name] for name in inertias})
 
 
 def _real(directory: Path, names: Sequence[str]) -> Iterator[Case]:

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from benchmarks.missing_effects import blind_cases
+from benchmarks.missing_effects import blind_cases, with_inertias
 from hil.analysis.diagnosis import examine
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.errors import BadInputError
@@ -106,9 +106,7 @@ def mistakes() -> Iterator[Mistake]:
 
 def bases(model: Model) -> Iterator[Model]:
     """A model, and with half and three times all its inertias."""
-    inertias = [name for name in model.parameters if name.endswith("inertia")]
-    for factor in (1.0, 0.5, 3.0):
-        yield model.with_parameters(**{name: factor * model.parameters[name] for name in inertias})
+    return (with_inertias(model, factor) for factor in (1.0, 0.5, 3.0))
 
 
 def refusal(model: Model, recordings: Sequence[Recording]) -> str:

@@ -14,7 +14,6 @@ from hil.analysis.frequency_response import period_samples
 from hil.analysis.missing_effects._spectrum import edges_hz, powers_of
 from hil.analysis.spikes import without_spikes
 from hil.analysis.stretches import (
-    GAP_SAMPLES,
     LEAST_DURATION_S,
     LEAST_SAMPLES,
     excerpts,
@@ -229,10 +228,6 @@ def _notes(recording: Recording, even: bool, dt: float) -> list[str]:
     ]
     if not even:
         notes.append(f"time stamps are uneven: put on a grid of {dt * 1e3:.4g} ms")
-        pauses = np.diff(recording.time_s)
-        if pauses.max() > GAP_SAMPLES * dt:
-            at = recording.time_s[int(np.argmax(pauses))]
-            notes[-1] += f", with a gap of {pauses.max():.3g} s at {at:.3g} s bridged"
     notes += [
         f"{name} is what {angle} turns by within {TURNED_OVER_S * 1e3:g} ms"
         for name, angle in there.items()

@@ -177,13 +177,12 @@ def _holding(values: Array, holds: float, rate_hz: float) -> Iterator[tuple[int,
 
 def _on_by_turning(one: Series, inside: slice, values: Array, other: int, least: float, model: Model) -> str:
     """The other speed, where it turns further than play and twist allow; even change may be drift."""
-    ratio, stiffness = gear_ratio_of(model) or 1.0, model.parameters.get("shaft_stiffness", np.inf)
     # what a motor gives to its shafts: at a resonance far more than its torque
     rotor = model.parameters.get("motor_inertia", 0.0) * np.gradient(one.measured[:, 0], 1.0 / one.rate_hz)
     pulls = block_means(one.torque[:, None], one.block)[:, 0] - rotor
-    apart = PLAY_RAD + ratio * float(np.std(pulls[inside])) / stiffness
     part = values[inside, other]
     turned = around(2, _slow(np.cumsum(part), one.rate_hz)) / one.rate_hz
+    apart = apart_rad(model, pulls[inside])
     return OUTPUTS[other] if np.std(turned) > apart and np.std(around(1, part)) > least else ""
 
 
@@ -198,6 +197,12 @@ def _on_by_torque(
     uneven = np.std(around(1, one.measured[inside, :2]), axis=0) * scale
     answers = uneven > np.maximum(5.0 * holds[:2], 0.2 * TURNS_ON * spread[:2])
     return INPUT if np.any(answers & one.has[:2]) else ""
+
+
+def apart_rad(model: Model, torque: Array) -> float:
+    """How far play and a motor's torque in N m let both sides turn apart, rms, wheel side."""
+    ratio, stiffness = gear_ratio_of(model) or 1.0, model.parameters.get("shaft_stiffness", np.inf)
+    return PLAY_RAD + ratio * float(np.std(torque)) / stiffness
 
 
 def around(degree: int, values: Array) -> Array:

@@ -21,6 +21,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.diagnosis.data.held import apart_rad, around
 from hil.analysis.diagnosis.data.thresholds import (
     ALIKE,
     ALIKE_SPEEDS,
@@ -29,7 +30,6 @@ from hil.analysis.diagnosis.data.thresholds import (
     FREE_SIZE,
     GEAR_SIZE,
     LIKELIER,
-    PLAY_RAD,
     SHOWS,
     TREND,
 )
@@ -119,14 +119,23 @@ def mistaken(model: Model, series: Sequence[Series], noise: Array) -> BadInputEr
     Args:
         noise: standard deviation of each output's block means, shape (3,), NaN where it was not recorded.
     """
-    seen = {factor: _pairs(model, series, noise, factor) for factor in {m.torque for m in _MISTAKES}}
-    gains = [_gain(seen[1.0], seen[one.torque], one) for one in _MISTAKES]
+    recorded = [_Recorded.of(one, model, np.nan_to_num(noise)) for one in series]
+    seen = {factor: _pairs(model, recorded, factor) for factor in {m.torque for m in _MISTAKES}}
+    given = seen[1.0][_AS_THEY_ARE]
+    known = {
+        order: given.known | pairs.known for order, pairs in seen[1.0].items()
+    }  # the same octaves for both
+    none = {order: _log_likelihood(replace(given, known=these), _NONE) for order, these in known.items()}
+    gains = [
+        _log_likelihood(replace(seen[one.torque][one.order], known=known[one.order]), one) - none[one.order]
+        for one in _MISTAKES
+    ]
     alike = np.flatnonzero(np.array(gains) > max(gains) - np.log(2.0)).tolist()  # a tie
     best = alike[0]
     if gains[best] < np.log(LIKELIER):
         return None
     found, ratio = _MISTAKES[best], gear_ratio_of(model) or 1.0
-    sizes = np.exp(seen[1.0][_AS_THEY_ARE].middle_sizes())
+    sizes = np.exp(given.middle_sizes())
     what = found.what.format(*(multiple(size) for size in sizes), gear=sizes[_GEAR] * ratio, ratio=ratio)
     if alike[:2] == [0, 1]:  # no torque tells which
         what = f"either {_MOTOR} or {_WHEEL} looks inverted"
@@ -165,14 +174,6 @@ class _Pairs:
 
 
 _ByOrder = dict[tuple[int, int, int], _Pairs]
-
-
-def _gain(given: _ByOrder, mended: _ByOrder, mistake: _Mistake) -> float:
-    """Log likelihood by a mistake over that by none, of the same octaves."""
-    own, other = given[_AS_THEY_ARE], mended[mistake.order]
-    known = own.known if mistake.order == _AS_THEY_ARE else own.known | other.known
-    none = _log_likelihood(replace(own, known=known), _NONE)
-    return _log_likelihood(replace(other, known=known), mistake) - none
 
 
 def _log_likelihood(pairs: _Pairs, mistake: _Mistake) -> float:
@@ -220,27 +221,50 @@ def _log_alike(unlike: Array, pair: int) -> Array:
     return np.asarray(np.log((1.0 - ANYTHING) * small + ANYTHING))
 
 
-def _pairs(model: Model, series: Sequence[Series], noise: Array, torque: float) -> _ByOrder:
+@dataclass(frozen=True)
+class _Recorded:
+    """A stretch, and what hangs on no torque: its transforms `about` the trend and `whole`, as of `_Lines`.
+
+    `tells` (3,): channels that say something; `powers` of their noise by octave; `turns` as of `_Pairs`.
+    """
+
+    series: Series
+    lines: _Lines
+    about: Lines
+    whole: Lines
+    tells: Flags
+    powers: list[Array]
+    turns: Flags
+
+    @classmethod
+    def of(cls, one: Series, model: Model, noise: Array) -> _Recorded:
+        """Of a stretch and the noise of its block means, (3,)."""
+        lines = _Lines.of(one)
+        about, whole = lines.transformed(np.nan_to_num(one.measured))
+        # readings of two levels move by less than their steps
+        tells = one.has & [len(np.unique(values)) > 2 for values in one.samples.T]
+        levels = np.where(one.of_angle, 0.0, noise).tolist()  # slow octaves of an encoder have none
+        powers = [lines.noise(level, one.samples[:, column]) for column, level in enumerate(levels)]
+        turned = lines.turned(whole[:, 0] / (gear_ratio_of(model) or 1.0), whole[:, 1])
+        return cls(one, lines, about, whole, tells, powers, turned > apart_rad(model, one.torque))
+
+
+def _pairs(model: Model, recorded: Sequence[_Recorded], torque: float) -> _ByOrder:
     """Of recordings with the torque times a factor, by orders of columns."""
-    sums = np.sum([_sums(one, model, np.nan_to_num(noise), torque) for one in series], axis=0)
+    sums = np.sum([_sums(one, model, torque) for one in recorded], axis=0)
     return {order: _Pairs.of(each) for order, each in zip(_ORDERS, sums, strict=True)}
 
 
-def _sums(one: Series, model: Model, noise: Array, torque: float) -> Array:
+def _sums(one: _Recorded, model: Model, torque: float) -> Array:
     """What `_Pairs.of` asks for, orders of columns x 6 x pairs x bands."""
     ratio, regulated = gear_ratio_of(model) or 1.0, is_regulated(model)
-    lines = _Lines.of(one)
-    # readings of two levels move by less than their steps
-    tells = one.has & [len(np.unique(values)) > 2 for values in one.samples.T]
-    y, whole = lines.transformed(np.nan_to_num(one.measured))
-    levels = np.where(one.of_angle, 0.0, noise).tolist()  # slow octaves of an encoder have none
-    powers = [lines.noise(level, one.samples[:, column]) for column, level in enumerate(levels)]
-    turns = lines.turned(whole[:, 0] / ratio, whole[:, 1]) > _apart_rad(model, one, ratio)
+    lines, whole, tells = one.lines, one.whole, one.tells
     if not regulated:
-        x, shown = lines.transformed(_simulated(model, one, torque * one.torque, ratio))
+        x, shown = lines.transformed(_simulated(model, one.series, torque * one.series.torque, ratio))
         rigid = _rigid(lines, ratio * x[:, 1], x[:, 0])
         # a mean torque says something, a mean speed only how it began
-        x[:, 2], y[:, 2] = shown[:, 2], whole[:, 2]
+        x[:, 2] = shown[:, 2]
+        y = np.column_stack([one.about[:, :2], whole[:, 2]])
     found = np.zeros((len(_ORDERS), 6, _GEAR + 1, _BANDS))
     for row, order in zip(found, _ORDERS, strict=True):
         if not all(tells[column] for place, column in enumerate(order) if place != column):
@@ -248,12 +272,12 @@ def _sums(one: Series, model: Model, noise: Array, torque: float) -> Array:
         first, second, _ = order
         for pair, column in enumerate(() if regulated else order):
             if tells[column]:
-                row[:3, pair], row[4, pair] = lines.sums(x[:, pair], y[:, column]), powers[column]
+                row[:3, pair], row[4, pair] = lines.sums(x[:, pair], y[:, column]), one.powers[column]
         if tells[[first, second]].all():
-            together = turns if regulated else rigid
+            together = one.turns if regulated else rigid
             row[:3, _GEAR] = together * lines.sums(ratio * whole[:, second], whole[:, first])
-            row[3, _GEAR], row[4, _GEAR] = ratio**2 * powers[second], powers[first]
-        row[5] = turns
+            row[3, _GEAR], row[4, _GEAR] = ratio**2 * one.powers[second], one.powers[first]
+        row[5] = one.turns
     return found
 
 
@@ -261,11 +285,6 @@ def _rigid(lines: _Lines, wheel: Lines, motor: Lines) -> Flags:
     """Octaves in which both speeds go together by the model."""
     xx, yy, xy = lines.sums(wheel, motor)
     return np.asarray((xx + yy - 2.0 * xy <= ALIKE_SPEEDS * (xx + yy)), dtype=bool)
-
-
-def _apart_rad(model: Model, one: Series, ratio: float) -> float:
-    """How far play and twist let both sides turn apart, rms."""
-    return PLAY_RAD + ratio * float(np.std(one.torque)) / model.parameters.get("shaft_stiffness", np.inf)
 
 
 @dataclass(frozen=True)
@@ -286,9 +305,8 @@ class _Lines:
 
     def transformed(self, values: Array) -> tuple[Lines, Lines]:
         """Of channels (blocks x 3) about their trend, and with their first octave as it is."""
-        at = np.linspace(-1.0, 1.0, len(values))
-        trend = np.polynomial.legendre.legval(at, np.polynomial.legendre.legfit(at, values, TREND)).T
-        about, whole = (np.fft.rfft(some * self.window[:, None], axis=0) for some in (values - trend, values))
+        both = (around(TREND, values), values)
+        about, whole = (np.fft.rfft(some * self.window[:, None], axis=0) for some in both)
         return about, np.where((self.band == 0)[:, None], whole, about)
 
     def sums(self, x: Lines, y: Lines) -> Array:
