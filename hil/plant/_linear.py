@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from hil.core.errors import BadInputError
 from hil.core.model import Model
-from hil.core.runtime.compiled import compiled, inlined
+from hil.core.runtime.compiled import compiled, compiled_without_lock, inlined
 from hil.plant import slots as P
 from hil.plant import states as X
 from hil.plant.slots import Table
@@ -169,7 +169,7 @@ def _shaft(p: Array) -> Array:
     return row
 
 
-@compiled
+@compiled_without_lock
 def _respond(a, b, c, d, s, out):  # type: ignore[no-untyped-def]
     """C·(s·1 - A)⁻¹·b + d for each s, by elimination: a library's call costs more than these few states."""
     n = a.shape[0]

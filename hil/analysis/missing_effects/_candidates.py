@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from hil.analysis.missing_effects._fit import (
     ROUNDS,
     Point,
@@ -62,13 +64,15 @@ class Candidates:
 
     def _times(self, best: Candidate) -> float:
         """How often a name more must bring its cost: where noise is left, more than slow noise would give."""
-        return self.problem.slow_noise if self.problem.is_noise(best.point.errors) else 1.0
+        if not self.problem.is_noise(best.point.errors):
+            return 1.0
+        level, most = self.problem.noise_in(best.point.errors)
+        return float(np.nanmax(most / level))
 
     def may_gain(self, candidate: Candidate) -> bool:
         """Whether one more name could pay, if it left nothing but noise."""
-        powers = candidate.point.powers(self.problem)
         least = math.log(candidate.known) + self.least(candidate)
-        return powers.most_to_gain(self.problem.noise) > least
+        return self.problem.most_to_gain(candidate.point.errors) > least
 
     def go_on_from(self, best: Candidate) -> None:
         """Weigh errors by what the best hypothesis so far leaves."""

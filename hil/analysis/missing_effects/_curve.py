@@ -29,6 +29,7 @@ from hil.analysis.missing_effects._outcome import Curve, Replay
 from hil.analysis.missing_effects._series import Series
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
+from hil.core.runtime.thread_map import map_on_threads
 
 Array = npt.NDArray[np.float64]
 
@@ -153,18 +154,19 @@ def _drag(hypothesis: Hypothesis, use: EffectUse) -> float:
 def _of_shafts(hypothesis: Hypothesis, use: EffectUse, replays: Sequence[Replay]) -> Curve | None:
     """Recorded torque of the shafts over the twist of the model, beside the model's torque."""
     model, chain = hypothesis.model(), hypothesis.chain()
-    seen: list[tuple[Array, Array, Array]] = []
-    for replay in replays:
+    replays = [one for one in replays if one.series.has[2] and hypothesis.kind != "rigid"]
+    if not replays:
+        return None
+
+    def seen(replay: Replay) -> tuple[Array, Array, Array]:
         one = replay.series
-        if not one.has[2] or hypothesis.kind == "rigid":
-            continue
         shown = np.stack([block_means(one, values) for values in replay.outputs(model).T])
         rate = shown[0] / chain.gear_ratio - shown[1]
         twist = (np.cumsum(rate) - 0.5 * rate) / one.rate_hz
-        seen.append((shown[2], one.measured[:, 2], twist - np.mean(twist - shown[2] / chain.shaft_stiffness)))
-    if not seen:
-        return None
-    law, measured, twist = (np.concatenate(parts) for parts in zip(*seen, strict=True))
+        return shown[2], one.measured[:, 2], twist - np.mean(twist - shown[2] / chain.shaft_stiffness)
+
+    each = map_on_threads(seen, replays)
+    law, measured, twist = (np.concatenate(parts) for parts in zip(*each, strict=True))
     return _curve(label_of(use), _TWIST, twist, measured, law)
 
 

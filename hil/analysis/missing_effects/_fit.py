@@ -25,6 +25,7 @@ Array = npt.NDArray[np.float64]
 _START_ROUNDS = 3
 _DAMPING = 1e-3  # of the normal equations' diagonal, at first
 _SETTLED = 1e-5  # of the cost: a step that brings less is the last one
+_ENOUGH = 3e-4  # the same in a round whose weights are not the last ones
 _SMALLEST = 1e-6  # step of a coordinate
 _FAILED = 3  # steps in a row, after which slopes are taken anew
 _ABRUPT = (30.0, 1.0)  # differences where contact comes and goes: over small ones the misfit jumps
@@ -135,13 +136,20 @@ def fit(
     if not coordinates:
         return with_better_starts(problem, point)
     round_ = _Round(problem, hypothesis, point.starts, coordinates)
-    found = least_squares(round_, *bounds_of(coordinates, 1.0), evaluations, _differences(hypothesis))
+    found = least_squares(
+        round_, *bounds_of(coordinates, 1.0), evaluations, _differences(hypothesis), _ENOUGH
+    )
     hypothesis = hypothesis.moved(coordinates, found)
     return point_at(problem, hypothesis, _better_starts(problem, hypothesis, point.starts, round_.directions))
 
 
 def least_squares(
-    round_: Descent, lower: Array, upper: Array, evaluations: int, differences: Sequence[float] = (1.0,)
+    round_: Descent,
+    lower: Array,
+    upper: Array,
+    evaluations: int,
+    differences: Sequence[float] = (1.0,),
+    settled: float = _SETTLED,
 ) -> Array:
     """Coordinates that leave least of a round's residual within bounds, from zero.
 
@@ -151,6 +159,7 @@ def least_squares(
 
     Args:
         differences: by which slopes are taken, times the usual ones; the next where steps fail.
+        settled: share of the cost; a step that brings less is the last one.
     """
     u = np.zeros(len(lower))
     left = round_.residual(u)
@@ -175,7 +184,7 @@ def least_squares(
         ends = np.max(np.abs(trial - u)) < _SMALLEST
         if not here:
             u, left, cost, damping, failed = trial, moved, cost_there, 0.1 * damping, 0
-            ends = had - cost < _SETTLED * had
+            ends = had - cost < settled * had
         else:
             damping, failed = 10.0 * damping, failed + 1
         if narrower and (ends or failed == _FAILED):

@@ -24,6 +24,7 @@ from hil.analysis.missing_effects._series import Series
 from hil.analysis.missing_effects._spectrum import Powers, bands_of, edges_hz, transformed
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
+from hil.core.runtime.thread_map import map_on_threads
 from hil.plant import SENSOR_TURNED, linear_system_of, sensor_response
 
 Array = npt.NDArray[np.float64]
@@ -159,8 +160,9 @@ def responses_of(problem: Problem) -> Responses | None:
     if problem.model.kind not in ("two_inertia", "three_inertia") or not free:
         return None
     longest = max(free, key=lambda one: len(one.torque))
-    alike = [one for one in free if _bins(one) == _bins(longest)]
-    parts = [_spectra(one) for one in alike]
+    found = list(zip(free, map_on_threads(_spectra, free), strict=True))
+    bins = max(len(part[1]) for _, part in found)
+    alike, parts = zip(*((one, part) for one, part in found if len(part[1]) == bins), strict=True)
     windows = sum(count for count, *_ in parts)
     power = np.sum([part[1] for part in parts], axis=0) / windows
     cross = np.sum([part[2] for part in parts], axis=0) / windows
@@ -172,14 +174,10 @@ def responses_of(problem: Problem) -> Responses | None:
     # torque is held over a sample: on its way to the plant it is late by half of one
     held = np.sinc(frequency * longest.dt) * np.exp(-1j * np.pi * frequency * longest.dt)
     power = power * np.abs(held) ** 2
-    found = cross * np.conj(held)[:, None] / np.maximum(power, 1e-300)[:, None]
-    rest = np.maximum(outputs - np.abs(found) ** 2 * power[:, None], 0.0)
+    response = cross * np.conj(held)[:, None] / np.maximum(power, 1e-300)[:, None]
+    rest = np.maximum(outputs - np.abs(response) ** 2 * power[:, None], 0.0)
     over_s = longest.turned_over_s
-    return Responses(problem, frequency[used], power[used], found[used], rest[used], windows, over_s)
-
-
-def _bins(one: Series) -> int:
-    return len(_spectra(one)[1])
+    return Responses(problem, frequency[used], power[used], response[used], rest[used], windows, over_s)
 
 
 def _spectra(one: Series) -> tuple[int, Array, ComplexArray, Array]:
@@ -232,7 +230,7 @@ def structures(problem: Problem) -> list[Hypothesis]:
 def _best(responses: Responses, starts: Sequence[Hypothesis]) -> Hypothesis:
     """The likeliest of the few starts whose responses are nearest."""
     nearest = sorted(starts, key=responses.misfit)[:_STARTS]
-    return max((responses.fitted(one) for one in nearest), key=responses.posterior)
+    return max(map_on_threads(responses.fitted, nearest), key=responses.posterior)
 
 
 def _scattered(responses: Responses, starts: Sequence[Hypothesis]) -> list[Hypothesis]:

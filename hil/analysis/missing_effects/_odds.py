@@ -60,7 +60,7 @@ class Candidate:
         return 0.5 * self.free * log(max(values, 2.0)) + log(comb(self.known, len(self.names))) + self.places
 
 
-def remains(had: Array, has: Array, noise: Array, slow: float) -> float:
+def remains(had: Array, has: Array, noise: Array, most: Array) -> float:
     """Share of the variance beyond noise that stays, mean of channels; those with little count less.
 
     Where all that stays may be slow noise, nothing stays if what was taken off is more than that.
@@ -69,11 +69,11 @@ def remains(had: Array, has: Array, noise: Array, slow: float) -> float:
         had: mean square of errors before, (3,); NaN where a channel was not recorded.
         has: the same after.
         noise: variance of proven noise, (3,).
-        slow: how many times that may be slow noise, which no name takes off.
+        most: variance that may be noise, (3,), which no name takes off.
     """
     there = np.isfinite(had)
-    had, has, noise = had[there], has[there], noise[there]
-    off, rest = had - has, np.maximum(has - slow * noise, 0.0)
+    had, has, noise, most = had[there], has[there], noise[there], most[there]
+    off, rest = had - has, np.maximum(has - most, 0.0)
     if not rest.any():
         unproven = float(np.sum(np.maximum(has - noise, 0.0) / noise))
         taken = float(np.sum(off / noise))

@@ -7,7 +7,7 @@ is the drop that each order promises. One transform gives all orders.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -15,8 +15,9 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._fit import Point
 from hil.analysis.missing_effects._problem import Problem
-from hil.analysis.missing_effects._spectrum import SEGMENT_S, bands_of, powers_of
-from hil.core.runtime.compiled import compiled
+from hil.analysis.missing_effects._series import Series
+from hil.analysis.missing_effects._spectrum import SEGMENT_S, Spectrum, bands_of, powers_of
+from hil.core.runtime.compiled import compiled_without_lock
 from hil.plant import gear_ratio_of, linear_system_of, turned
 
 Array = npt.NDArray[np.float64]
@@ -42,9 +43,9 @@ def orders_of(problem: Problem, point: Point, side: Side) -> list[float]:
     system = linear_system_of(point.hypothesis.packed()[0])
     fine = fineness(turns(problem, side))
     orders = np.arange(fine, _HIGHEST, fine)
-    ways = [_Gathered(one, len(orders)) for one in (problem, by_noise)]
-    for index, one in enumerate(problem.series):
-        count = len(point.errors[index])
+
+    def seen(index: int) -> tuple[npt.NDArray[np.int64], list[_Seen]]:
+        one, count = problem.series[index], len(point.errors[index])
         frequency: Array = np.fft.rfftfreq(count, 1.0 / one.rate_hz).astype(np.float64)
         response = np.zeros((3, len(frequency)), complex)
         fast = frequency > 1.0 / SEGMENT_S  # what is slower the starts of windows take up
@@ -56,50 +57,55 @@ def orders_of(problem: Problem, point: Point, side: Side) -> list[float]:
         finer = int(np.ceil(2.0 * _HIGHEST * np.max(speed) / one.rate_hz)) + 1
         at = np.interp(np.arange(count * finer) / finer, np.arange(count), angle)
         bins = bins_of(at, fine, len(orders))
-        for way in ways:
-            way.add(index, point.errors[index], response[one.has], bins, orders, speed, frequency)
+        both = (problem.spectrum, by_noise.spectrum)
+        errors = point.errors[index]
+        return bins, [_seen(one, way, errors, response, len(bins), orders, speed, frequency) for way in both]
+
+    bins, shown = zip(*problem.each(seen), strict=True)
+    where, ways = np.concatenate(bins), list(zip(*shown, strict=True))
+    sums = [
+        np.bincount(where, np.concatenate([one.torque for one in way]), _BINS * len(orders)) for way in ways
+    ]
     found: list[float] = []
-    slopes = by_order(np.array([way.pushed for way in ways]), len(orders))
-    for way, slope in zip(ways, slopes, strict=True):
-        promise = np.abs(slope) ** 2 / np.maximum(way.energy, 1e-250)
-        promise[promise > way.whole] = 0.0  # more than there is: an order that the plant does not show
+    for way, slope in zip(ways, by_order(np.array(sums), len(orders)), strict=True):
+        promise = np.abs(slope) ** 2 / np.maximum(np.sum([one.energy for one in way], axis=0), 1e-250)
+        whole = sum(one.whole for one in way)
+        promise[promise > whole] = 0.0  # more than there is: an order that the plant does not show
         promise[orders * turns(problem, side) < PERIODS] = 0.0
         found += peaks(orders, promise, _COUNT)
     return list(dict.fromkeys(found))
 
 
-class _Gathered:
-    """Of all recordings, by one weighing: what a ripple of each order promises, and what there is.
+@dataclass(frozen=True)
+class _Seen:
+    """Of a recording, by one weighing: what a ripple of each order promises, and what there is.
 
-    `pushed` is the torque sent back by bins of angle, `energy` that of each order's ripple behind the plant.
+    `torque` is that sent back, by finer blocks, `energy` that of each order's ripple behind the plant.
     """
 
-    def __init__(self, problem: Problem, orders: int) -> None:
-        self.problem = problem
-        self.pushed = np.zeros(_BINS * orders)
-        self.energy = np.zeros(orders)
-        self.whole = 0.0
+    torque: Array
+    energy: Array
+    whole: float
 
-    def add(
-        self,
-        index: int,
-        errors: Array,
-        response: npt.NDArray[np.complex128],
-        bins: npt.NDArray[np.int64],
-        orders: Array,
-        speed_hz: Array,
-        frequency: Array,
-    ) -> None:
-        """One recording: its errors (blocks x 3), response of its channels, bins of angle of finer blocks."""
-        one, spectrum = self.problem.series[index], self.problem.spectrum
-        error = np.nan_to_num(errors[:, one.has])
-        slope = spectrum.sent_back(error, one.has, one.rate_hz, one.lowest_hz)
-        self.whole += float(np.sum(error * slope))
-        back = np.sum(np.conj(response) * np.fft.rfft(slope, axis=0).T, axis=0)
-        self.pushed += np.bincount(bins, np.fft.irfft(back, len(bins)), len(self.pushed))
-        weight = spectrum.weights(len(errors), one.rate_hz, one.lowest_hz).T ** 2
-        gain = np.sum(np.abs(response) ** 2 * weight[one.has], axis=0)
-        self.energy += _energy(speed_hz, orders, frequency, gain)
+
+def _seen(
+    one: Series,
+    spectrum: Spectrum,
+    errors: Array,
+    response: npt.NDArray[np.complex128],
+    finer: int,
+    orders: Array,
+    speed_hz: Array,
+    frequency: Array,
+) -> _Seen:
+    """Of errors (blocks x 3) and the response of all channels; the torque at so many finer blocks."""
+    error = np.nan_to_num(errors[:, one.has])
+    slope = spectrum.sent_back(error, one.has, one.rate_hz, one.lowest_hz)
+    back = np.sum(np.conj(response[one.has]) * np.fft.rfft(slope, axis=0).T, axis=0)
+    weight = spectrum.weights(len(errors), one.rate_hz, one.lowest_hz).T ** 2
+    gain = np.sum((np.abs(response) ** 2 * weight)[one.has], axis=0)
+    torque = np.asarray(np.fft.irfft(back, finer), dtype=float)
+    return _Seen(torque, _energy(speed_hz, orders, frequency, gain), float(np.sum(error * slope)))
 
 
 def turned_with(problem: Problem, point: Point) -> Problem:
@@ -180,7 +186,7 @@ def _energy(speed_hz: Array, orders: Array, frequency: Array, gain: Array) -> Ar
     return total
 
 
-@compiled
+@compiled_without_lock
 def _add_between(total, factor, step, values):  # type: ignore[no-untyped-def]
     """Add factor·values at `step`, 2·`step` …, straight between places 0, 1 …; beyond them nothing."""
     last = values.shape[0] - 1

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from hil.analysis.missing_effects._allowance import UNBOUNDED, Allowance
 from hil.analysis.missing_effects._hypothesis import Coordinate, Hypothesis
 from hil.analysis.missing_effects._noise import colour_of, with_motion
-from hil.analysis.missing_effects._series import Series
+from hil.analysis.missing_effects._series import Series, block_means
 from hil.analysis.missing_effects._shown import Shown
 from hil.analysis.missing_effects._spectrum import Powers, Spectrum, of_noise, powers_of
 from hil.core.model import Model, TransferFunction
@@ -26,6 +26,8 @@ _BEHIND_WHEELS = frozenset({"wheel_inertia", "tyre_stiffness", "tyre_damping", "
 STATES = 5  # of a start: motor speed, wheel speed, shaft torque, and two of a motion inside the tyre
 _FAR = 1e9  # a simulation that runs away is so many standard deviations off, not infinitely many
 _SLOW_NOISE = 1.2  # times its white noise may a sensor's error be where its slow noise is not proven
+_WINDOWS = 12  # at least, by which noise is told
+_STILL = (0.25, 0.1)  # of them have that share of the mean power of the torque, in most octaves
 _RANK = 1e-7  # smallest singular value of a start's sensitivities that counts, of the largest
 
 
@@ -35,7 +37,8 @@ class Problem:
 
     `noise` (3,) is a standard deviation, `signal` (3,) a mean square of each channel, `spectrum` is what
     errors are weighed by; `scales` are sizes of numbers that may be zero, `held` numbers without effect.
-    `colour` (3 x bands) is that of noise, None where it is white. Every simulation asks `allowance` first.
+    `colour` (3 x bands) is that of noise, None where it is white; `tells_noise` whether the torque differs so
+    much between windows that what all of them show is noise. Every simulation asks `allowance` first.
     """
 
     model: Model
@@ -47,6 +50,7 @@ class Problem:
     held: frozenset[str] = frozenset()
     angles: tuple[Array, ...] = ()
     colour: Array | None = None
+    tells_noise: bool = False
     shown: Shown = field(default_factory=Shown, repr=False, compare=False)
     allowance: Allowance = UNBOUNDED
 
@@ -79,11 +83,29 @@ class Problem:
         """Largest variance of block means that may be noise, in that of white noise."""
         return 1.0 + self.series[0].block * (_SLOW_NOISE**2 - 1.0)
 
+    def noise_in(self, errors: Sequence[Array]) -> tuple[Array, Array]:
+        """Mean square that is noise, (3,), and the most that may be noise.
+
+        What quiet windows show as well; where all windows are alike white noise, and what is usual.
+        """
+        most = self.slow_noise * self.noise**2
+        if not self.tells_noise:
+            return self.noise**2, most
+        powers = self.powers(errors)
+        level, upper = (powers.mean_square(one) for one in powers.quiet(self.noise))
+        return np.minimum(level, most), np.minimum(upper, most)
+
+    def most_to_gain(self, errors: Sequence[Array]) -> float:
+        """Growth of log L if no more than noise stayed in any octave."""
+        powers = self.powers(errors)
+        stays = powers.quiet(self.noise)[1] if self.tells_noise else np.zeros(1)
+        return powers.most_to_gain(self.noise, stays)
+
     def is_noise(self, errors: Sequence[Array]) -> bool:
         """Whether errors are at most what is proven, or usual for slow noise."""
         square = self.mean_square(errors)
         there = np.isfinite(square)
-        return bool(np.all(square[there] <= self.slow_noise * self.noise[there] ** 2))
+        return bool(np.all(square[there] <= self.noise_in(errors)[1][there]))
 
     def powers(self, errors: Sequence[Array], *, once: bool = False) -> Powers:
         """Of errors of each recording, where they count.
@@ -300,7 +322,17 @@ def problem_of(
         angles=tuple(one.angles(ratio) for one in series),
         colour=colour,
         held=_held(model, series),
+        tells_noise=_tells_noise(series),
     )
+
+
+def _tells_noise(series: Sequence[Series]) -> bool:
+    """Whether the torque is still in some windows and not in others, in most octaves."""
+    torques = [block_means(one.torque, one.block) for one in series]
+    power = powers_of(torques, series[0].rate_hz, np.ones(1)).power[:, 0, 1:]
+    low, mean = np.quantile(power, _STILL[0], axis=0), np.mean(power, axis=0)
+    is_still = np.median(low / np.maximum(mean, 1e-300)) < _STILL[1]
+    return bool(len(power) >= _WINDOWS and is_still)
 
 
 def _held(model: Model, series: Sequence[Series]) -> frozenset[str]:

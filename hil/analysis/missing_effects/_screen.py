@@ -25,6 +25,7 @@ from hil.analysis.missing_effects._projection import Projection
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS, STRETCH, Direction, Effect, Probe
 from hil.core.model import EffectUse
+from hil.core.runtime.thread_map import map_on_threads
 from hil.plant import chain_numbers
 
 Array = npt.NDArray[np.float64]
@@ -35,6 +36,7 @@ _AT_ONCE = 24  # simulations
 _DRAWS = 64  # of an abrupt effect's numbers
 _AROUND = 0.25  # of the logarithm of numbers that it must have
 _FAR = 1.4  # of the logarithm of optional ones, which are known less
+_SIDES: tuple[Literal["wheel", "rotor"], ...] = ("wheel", "rotor")
 _AS_IT_IS, _STRETCHED = Direction({}, 1.0, 1.0), (Direction({}, *STRETCH),)
 
 
@@ -83,7 +85,15 @@ class Scene:
         return tuple(name for name, there in zip(OUTPUTS, has, strict=True) if there)
 
     def orders(self, side: Literal["wheel", "rotor"]) -> list[float]:
-        return orders_of(self.problem, self.point, side) if self.point else []
+        return self._orders[side]
+
+    @cached_property
+    def _orders(self) -> dict[Literal["wheel", "rotor"], list[float]]:
+        point = self.point
+        if point is None:
+            return {side: [] for side in _SIDES}
+        each = map_on_threads(lambda side: orders_of(self.problem, point, side), _SIDES)
+        return dict(zip(_SIDES, each, strict=True))
 
 
 def promises(

@@ -58,24 +58,22 @@ def search(done: Candidates, show: Callable[[str], None]) -> None:
         if grown is None or not done.gains(best, grown):
             break
         had, has = (problem.mean_square(one.point.errors) for one in (best, grown))
-        was_weak, weak = weak, remains(had, has, problem.noise**2, problem.slow_noise) > HALF
+        was_weak, weak = weak, remains(had, has, *problem.noise_in(grown.point.errors)) > HALF
         if weak and was_weak:
             break  # of two that go together the first may take off less than half, the second does not
-        best = _pruned(done, _without_chance(done, best, grown))
+        best = _pruned(done, _without_chance(done, grown))
         done.go_on_from(best)
         if any(EFFECTS[use.id].law.follows for use in best.point.hypothesis.terms):
             best = _with_better_angles(done, best)
 
 
-def _without_chance(done: Candidates, best: Candidate, grown: Candidate) -> Candidate:
+def _without_chance(done: Candidates, grown: Candidate) -> Candidate:
     """A grown hypothesis, or the one before it where that does as well from the numbers of the grown one.
 
-    Beside an abrupt effect the misfit jumps with every number, and a name that takes nothing off may lead a
-    fit over a jump. Optional numbers that were opened beside the new name may be all that it brought.
+    A name that takes nothing off may lead a fit out of a minimum that it was stuck in. Optional numbers that
+    were opened beside the new name may be all that it brought.
     """
     before = grown.point.hypothesis.without(len(grown.names) - 1)
-    if not before.is_abrupt and before.opened == best.point.hypothesis.opened:
-        return grown
     return max(grown, done.fitted(before, grown), key=done.score)
 
 
@@ -128,7 +126,7 @@ def _grown(
     if grown is not None and done.score(grown) > done.score(best):
         grown = _among_losses(done, grown, show)
         had, has = (done.problem.mean_square(one.point.errors) for one in (best, grown))
-        if remains(had, has, done.problem.noise**2, 1.0) <= HALF:
+        if remains(had, has, done.problem.noise**2, done.problem.noise**2) <= HALF:
             brought = HALF * (grown.log_likelihood - best.log_likelihood)
             rarer = [one for one in rarer if brought < one[1] < math.inf]
     others = _best_of(done, best, rarer, show)

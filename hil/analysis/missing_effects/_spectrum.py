@@ -28,6 +28,7 @@ from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
+from scipy.stats import gamma
 
 Array = npt.NDArray[np.float64]
 Channels = npt.NDArray[np.bool_]
@@ -37,6 +38,9 @@ SEGMENT_S = 4.0
 RIGHT_TO = 1e-3
 """Share of a channel's rms to which no model of a driveline is right, in any octave."""
 _LAPPED = 0.5  # of a window is new: the rest was in the one before
+_QUIET = 0.25  # of the windows
+_SURE = 3.0  # standard errors, as many octaves are looked at
+_HANN_BINS = 1.5  # of a transform with Hann's window hold one value
 _LOWEST_HZ = 0.5  # upper edge of the first band; each further band is an octave wide
 
 
@@ -165,10 +169,10 @@ class Powers:
         terms = np.where(self.bins > 0.0, self.bins / inside * each, 0.0)
         return np.asarray(np.sum(terms, axis=(1, 2)))
 
-    def most_to_gain(self, noise: Array) -> float:
-        """Growth of the log likelihood if nothing but noise were left in any octave."""
-        p, n, d, inside = self._terms(noise)
-        return float(-np.sum(self.bins / inside * self._of_means(p, n, d, inside)))
+    def most_to_gain(self, noise: Array, stays: Array) -> float:
+        """Growth of the log likelihood if no more than such powers (3 x bands) stayed in any octave."""
+        p = self._terms(noise)[0]
+        return self.growth(noise, np.minimum(stays / p, 1.0))
 
     @staticmethod
     def _of_means(p: Array, n: Array, d: Array, inside: Array) -> Array:
@@ -198,12 +202,42 @@ class Powers:
         """Of the log likelihood by the power of each bin (3 x bands)."""
         return np.asarray(-(1.0 + (inside - 1.0) * n / p) / (p + d) / inside)
 
-    def mean_square(self) -> Array:
-        """Of each channel over what counts, (3,), as if its noise were white; NaN where nothing does."""
+    def mean_square(self, power: Array | None = None) -> Array:
+        """Of each channel over what counts, (3,), as if its noise were white; NaN where nothing does.
+
+        Args:
+            power: of something else, 3 x bands.
+        """
         count = np.sum(self.bins, axis=(0, 2))
-        power = self.power if self.colour is None else self.power / self.colour
-        sums = np.sum(self.bins * power, axis=(0, 2))
+        power = self.power if power is None else power
+        sums = np.sum(self.bins * (power if self.colour is None else power / self.colour), axis=(0, 2))
         return np.where(count > 0.0, sums / np.maximum(count, 1e-300), np.nan)
+
+    def quiet(self, noise: Array) -> Array:
+        """Power that quiet windows show as well, and the most that it may be: 2 x 3 x bands.
+
+        It is the lower quartile over windows, as that of so many bins of noise is (a gamma distribution); at
+        least white noise, and at most what lower octaves may be, since no sensor's noise rises. The lowest
+        octave, in which an offset stands, is taken as the next one. The most is `_SURE` standard errors above
+        it.
+        """
+        white = self._terms(noise)[1]
+        found = np.stack([white, white])
+        for channel in range(len(white)):
+            most = math.inf
+            used = np.flatnonzero(self.bins[:, channel].any(axis=0)).tolist()
+            for band in used[1:] or used:
+                counts = self.bins[:, channel, band] > 0.0
+                shape = self.bins[counts, channel, band].mean() / _LAPPED / _HANN_BINS
+                usual = gamma.ppf(_QUIET, shape)
+                slope = usual * gamma.pdf(usual, shape)
+                error = np.sqrt(_QUIET * (1.0 - _QUIET) / counts.sum()) / slope
+                level = np.quantile(self.power[counts, channel, band], _QUIET) / usual * shape
+                over = min(max(float(level) / white[channel, band], 1.0), most)
+                most = min(most, over * (1.0 + _SURE * float(error)))
+                found[:, channel, band] *= over, most
+            found[:, channel, used[:1]] *= (found[:, channel] / white[channel])[:, used[1:2]]
+        return found
 
     def _terms(self, noise: Array) -> tuple[Array, Array, Array, Array]:
         """Mean power, at least that of noise; noise; what no model is right to; bins of one discrepancy."""

@@ -266,23 +266,26 @@ def _remains(of: Judged, before: Candidate, after: Candidate, wrong: Array | flo
     """Share of the variance beyond noise that stays; none where numbers of the base had explained it.
 
     Nor where all that stays may be slow noise, if of one channel half as much as that was taken off, and by
-    more than fits to noise so slow bring.
+    more than fits to noise so slow bring. All of it where the score fell: what was dropped beside it paid.
 
     Args:
         wrong: variance that stays by what laws get wrong, (3,), whatever takes it off.
     """
     problem, done = of.done.problem, of.done
+    if done.score(after) < done.score(before):
+        return 1.0
     had, has = of.left(before), of.left(after) + wrong
     if after.prior - before.prior > done.cost_of_a_number(after) and done.score(after) > done.score(before):
         had = np.fmax(had, of.left(done.at(_fewer(after.point.hypothesis, before.names), after)))
-    there, noise = np.isfinite(has), problem.noise**2
-    if np.all(has[there] <= problem.slow_noise * noise[there]):
+    there = np.isfinite(has)
+    noise, most = problem.noise_in(after.point.errors)
+    if np.all(has[there] <= most[there]):
         grew = after.log_likelihood - before.log_likelihood
         cost = grew - (done.score(after) - done.score(before))
         off, slow = (had - has)[there], np.maximum(has - noise, 0.0)[there]
-        if grew / problem.slow_noise > cost and np.any(off > HALF * slow):
+        if grew / np.max((most / noise)[there]) > cost and np.any(off > HALF * slow):
             return 0.0
-    return remains(had, has, problem.noise**2, problem.slow_noise)
+    return remains(had, has, noise, most)
 
 
 def _fewer(hypothesis: Hypothesis, names: Sequence[str]) -> Hypothesis:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -12,6 +13,7 @@ from hil.core.effects._law import Law
 from hil.core.effects._probe import Probe, Scene, fixed
 
 _LEAST_INERTIA = 1e-6
+_FIRST_DAMPING = 0.6
 
 
 def _coupled(chain: dict[str, float], values: Mapping[str, Any]) -> None:
@@ -24,16 +26,15 @@ def _coupled(chain: dict[str, float], values: Mapping[str, Any]) -> None:
 
 def _probes(scene: Scene) -> Iterator[Probe]:
     vehicle = scene.parameters["vehicle_inertia"]
-    for share in (0.007, 0.014, 0.03, 0.06):
-        for frequency in (2.0, 4.0, 8.0, 16.0):
-            for damping in (0.15, 0.6, 1.5):
-                wheel = share * vehicle
-                omega = 2 * math.pi * frequency
-                yield fixed(
-                    wheel_inertia=wheel,
-                    tyre_stiffness=wheel * omega**2,
-                    tyre_damping=2 * damping * omega * wheel,
-                )
+    places = itertools.product((0.007, 0.014, 0.03, 0.06), (2.0, 4.0, 8.0, 16.0))
+    for place, (share, frequency) in enumerate(places):
+        for damping in (0.15, 0.6, 1.5):
+            wheel, omega = share * vehicle, 2 * math.pi * frequency
+            yield fixed(
+                wheel_inertia=wheel,
+                tyre_stiffness=wheel * omega**2,
+                tyre_damping=2 * damping * omega * wheel,
+            ).at(place, first=damping == _FIRST_DAMPING)
 
 
 EFFECT = Effect(

@@ -43,14 +43,14 @@ _NOISE = np.array([1.0, 1.0, 1.0])
 
 def test_what_stays_beyond_noise_counts_where_there_is_any() -> None:
     had, has = np.array([100.0, 1.0, np.nan]), np.array([26.5, 1.0, np.nan])
-    assert remains(had, has, _NOISE, 2.0) == pytest.approx(24.5 / 98.0)
+    assert remains(had, has, _NOISE, 2.0 * _NOISE) == pytest.approx(24.5 / 98.0)
 
 
 def test_nothing_stays_where_all_may_be_slow_noise_and_more_was_taken_off() -> None:
     had, has = np.array([2.5, 1.1, 1.1]), np.array([1.3, 1.1, 1.1])
-    assert remains(had, has, _NOISE, 2.76) == 0.0
+    assert remains(had, has, _NOISE, 2.76 * _NOISE) == 0.0
 
 
 def test_a_tenth_of_the_noise_is_no_name() -> None:
     had, has = np.array([1.5, 1.0, 1.0]), np.array([1.4, 1.0, 1.0])
-    assert remains(had, has, _NOISE, 2.76) > 0.5
+    assert remains(had, has, _NOISE, 2.76 * _NOISE) > 0.5

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from hil.analysis.missing_effects._candidates import Candidates
-from hil.analysis.missing_effects._fit import point_at
+from hil.analysis.missing_effects._fit import point_at, with_better_starts
 from hil.analysis.missing_effects._hypothesis import Hypothesis
-from hil.core.model import EffectUse
-from tests.hil.analysis.missing_effects.chain import NUMBERS, chirp_problem
+from hil.core.channels import OUTPUTS
+from hil.core.model import EffectUse, Model
+from tests.hil.analysis.missing_effects.chain import NUMBERS, chirp_problem, driven, problem_about
 
 
 def test_what_runs_away_is_far_off_and_not_the_likeliest_of_all() -> None:
@@ -40,3 +44,27 @@ def test_a_base_that_is_far_off_says_nothing_but_its_teeth() -> None:
     assert problem.log_prior(softer) < -4.0
     assert problem.log_prior(softer, far=True) == problem.log_prior(base, far=True) == 0.0
     assert problem.log_prior(geared, far=True) == problem.log_prior(geared) < -4.0
+
+
+def test_windows_that_differ_in_their_torque_tell_slow_noise_and_alike_ones_do_not() -> None:
+    """By a chirp, which is still in most windows of an octave; not by a multisine that repeats itself."""
+    time = np.arange(60_000, dtype=np.float64) * 1e-3
+    lines = 2.0 ** np.arange(-2, 6)
+    swept = 40.0 * np.sin(2.0 * np.pi * (0.5 + 0.25 * time) * time)
+    repeated = 10.0 * np.sum(np.sin(2.0 * np.pi * lines[:, None] * time + lines[:, None]), axis=0)
+    rng = np.random.default_rng(5)
+    slow = lfilter([1.0], [1.0, -0.98], rng.normal(size=(len(time), 3)), axis=0).T
+    model = Model("two_inertia", NUMBERS)
+    for torque, tells in ((swept, True), (repeated, False)):
+        read = driven(model, torque, 0.002)
+        sizes = {name: 1e-3 * np.std(read[name]) for name in OUTPUTS}
+        drawn = {name: sizes[name] * one / np.std(one) for name, one in zip(OUTPUTS, slow, strict=True)}
+        noisy = {name: values + drawn.get(name, 0.0) for name, values in read.channels.items()}
+        problem = problem_about(model, replace(read, channels=noisy))
+        errors = with_better_starts(problem, point_at(problem, Hypothesis(model, dict(NUMBERS)))).errors
+        level, most = problem.noise_in(errors)
+        proven = problem.mean_square(errors) if tells else problem.noise**2
+        assert problem.tells_noise is tells
+        assert level == pytest.approx(proven, rel=0.1)
+        assert np.all(most > 1.1 * level)
+        assert problem.is_noise(errors)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from hil.analysis.missing_effects._spectrum import Powers, edges_hz, of_noise, powers_of
 
@@ -55,11 +56,12 @@ def test_what_can_be_gained_is_what_a_likelihood_at_noise_has_more() -> None:
     """Means at or below noise: nothing; a misfit: what separates it from noise."""
     large = _white_noise(30.0)
     noise = np.full(3, 0.3)
+    nothing = np.zeros(1)
     quiet = Powers(large.edges_hz, np.full_like(large.power, 0.09), large.bins, large.signal)
-    assert quiet.most_to_gain(noise) == pytest.approx(0.0, abs=1e-9)
+    assert quiet.most_to_gain(noise, nothing) == pytest.approx(0.0, abs=1e-9)
     gained = np.sum(quiet.log_likelihood(noise)) - np.sum(large.log_likelihood(noise))
-    assert large.most_to_gain(noise) == pytest.approx(gained, rel=1e-9)
-    assert _white_noise(0.29).most_to_gain(noise) < 60.0  # of chance in octaves of few bins
+    assert large.most_to_gain(noise, nothing) == pytest.approx(gained, rel=1e-9)
+    assert _white_noise(0.29).most_to_gain(noise, nothing) < 60.0  # of chance in octaves of few bins
 
 
 def test_squares_of_weighed_windows_add_to_those_of_the_samples() -> None:
@@ -143,3 +145,43 @@ def test_a_misfit_where_coloured_noise_is_small_is_no_noise() -> None:
     plain = powers_of([slow], RATE_HZ, np.ones(3), colour=colour).mean_square()
     colour[:, :4] = 1e-3
     assert np.all(powers_of([slow], RATE_HZ, np.ones(3), colour=colour).mean_square() > 500.0 * plain)
+
+
+def _slow_noise(blocks: int, seed: int) -> np.ndarray:
+    """White noise of one, and beside it as much that is slower than 5 Hz (three channels)."""
+    rng = np.random.default_rng(seed)
+    slow = lfilter([1.0], [1.0, -np.exp(-2.0 * np.pi * 5.0 / RATE_HZ)], rng.normal(size=(blocks, 3)), axis=0)
+    return np.asarray(rng.normal(size=(blocks, 3)) + slow / np.std(slow))
+
+
+def test_quiet_windows_tell_the_noise_beside_a_misfit_that_comes_and_goes() -> None:
+    noise = _slow_noise(50_000, 3)
+    bursts = np.zeros_like(noise)
+    for first in range(0, 40_000, 10_000):  # half of the time, of 90 times the power
+        time_s = np.arange(5000) / RATE_HZ
+        bursts[first : first + 5000] = 30.0 * np.sin(2.0 * np.pi * (0.5 + 2.0 * time_s) * time_s)[:, None]
+    alone, beside = (powers_of([one], RATE_HZ, np.ones(3)) for one in (noise, noise + bursts))
+    is_noise = np.sum(alone.power * alone.bins, axis=0) / np.sum(alone.bins, axis=0)
+    level, most = beside.quiet(np.ones(3))
+    assert level[:, 3:] == pytest.approx(is_noise[:, 3:], rel=0.3)
+    assert np.all(most[:, 2:] > is_noise[:, 2:])
+    assert beside.mean_square(level) == pytest.approx(alone.mean_square(), rel=0.1)
+    assert np.all(beside.mean_square() > 50.0 * alone.mean_square())
+
+
+def test_what_is_in_every_window_and_no_sensors_noise_is_not_taken_for_it() -> None:
+    """An offset stands in the lowest octave, a line of turning above quieter ones."""
+    noise = _slow_noise(50_000, 4)
+    line = 5.0 * np.sin(2.0 * np.pi * 20.0 * np.arange(len(noise)) / RATE_HZ)[:, None]
+    alone = powers_of([noise], RATE_HZ, np.ones(3)).mean_square()
+    for always in (np.full((1, 3), 5.0), line * np.ones(3)):
+        powers = powers_of([noise + always], RATE_HZ, np.ones(3))
+        level, most = (powers.mean_square(one) for one in powers.quiet(np.ones(3)))
+        assert np.all(level < 1.7 * alone)
+        assert np.all(powers.mean_square() > 2.0 * most)
+
+
+def test_quiet_windows_never_have_less_than_proven_noise() -> None:
+    level, most = _white_noise(0.3).quiet(np.ones(3))
+    assert level == pytest.approx(1.0)
+    assert np.all(most >= level)

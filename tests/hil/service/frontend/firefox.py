@@ -19,6 +19,8 @@ from pathlib import Path
 from typing import Any
 
 FIREFOX = shutil.which("firefox-esr") or shutil.which("firefox")
+KEYS = {"Tab": "\ue004", "Enter": "\ue007", "Control": "\ue009"}
+"""As WebDriver writes them: https://www.w3.org/TR/webdriver2/#keyboard-actions."""
 _WITHIN_S = 90.0
 _PREFERENCES: dict[str, str | int | bool] = {
     "app.normandy.enabled": False,
@@ -100,6 +102,20 @@ class Firefox:
                 raise FirefoxError(f"never true: {script}")
             time.sleep(0.1)
         return found
+
+    def press(self, *keys: str, held: str = "") -> None:
+        """Press keys one after the other as a person would: letters, or names of `KEYS`.
+
+        Args:
+            held: name of a key that is held meanwhile.
+        """
+        values = [KEYS.get(key, key) for key in keys]
+        around = [KEYS[held]] if held else []
+        steps = [{"type": "keyDown", "value": one} for one in around]
+        steps += [{"type": kind, "value": one} for one in values for kind in ("keyDown", "keyUp")]
+        steps += [{"type": "keyUp", "value": one} for one in around]
+        keyboard = {"type": "key", "id": "keyboard", "actions": steps}
+        self.ask("WebDriver:PerformActions", {"actions": [keyboard]})
 
     def resize(self, width: int, height: int) -> None:
         """Give the window a size in pixels."""

@@ -18,6 +18,7 @@ _LOADED = """
   const main = document.querySelector("main"), title = document.querySelector("h1");
   return title && main && !/Loading|Laden:|読み込み中/.test(main.innerText) ? title.innerText : "";
 """
+_STOPS = 120  # of Tab, after which a person would have given up long ago
 _AXE = """
   const { violations } = await axe.run(document, arguments[0]);
   return violations.map((one) => `${one.id}: ${one.nodes.map((node) => node.html).join(" ")}`);
@@ -74,3 +75,31 @@ def test_a_plan_is_queued_from_its_form(window: Firefox, there: Served) -> None:
     there.over(run)
     assert window.until("return document.querySelectorAll('.plots canvas').length >= 4")
     assert window.run("return troubles") == []
+
+
+def test_a_run_goes_from_start_to_result_by_keyboard_alone(window: Firefox, there: Served) -> None:
+    window.open(f"{there.url}/benches")
+    window.until(_LOADED)
+    window.press("k", held="Control")
+    window.until("return document.querySelector('dialog.palette')?.contains(document.activeElement)")
+    window.press(*"short")
+    window.until("return /short/.test(document.querySelector('dialog [aria-selected=true]')?.innerText)")
+    window.press("Enter")
+    window.until("return location.pathname === '/plans/short'")
+    window.until("return document.querySelector('form.start button.main:enabled')")
+    _go_to(window, "document.activeElement.matches('form.start button.main')")
+    window.press("Enter")
+    run = int(window.until("return location.pathname.startsWith('/runs/') && location.pathname.slice(6)"))
+    assert there.over(run)["verdict"] == "pass"
+    window.until("return document.querySelector('main a[href$=\"report.html\"]')")
+    _go_to(window, "document.activeElement.matches('main a[href$=\"report.html\"]')")
+
+
+def _go_to(window: Firefox, there: str) -> None:
+    """Press Tab until the focus is somewhere, which shows: a person sees where it is."""
+    for _ in range(_STOPS):
+        if window.run(f"return {there}"):
+            assert window.run("return getComputedStyle(document.activeElement).outlineStyle") != "none"
+            return
+        window.press("Tab")
+    raise AssertionError(f"no Tab leads to where {there}")

@@ -14,6 +14,10 @@ const ENTRIES: Entry[] = [
 const names = (text: string) => found(ENTRIES, text, 9).map(({ name }) => name);
 
 test("names that begin with the words come first, then those that tell of them", () => assert.deepEqual(names("accep"), ["acceptance", "commissioning", "Run 17"]));
+test("a name that is typed whole comes before those that begin with it", () => {
+  const longer: Entry = { kind: "plan", name: "acceptance_low_friction", about: "" };
+  assert.deepEqual(found([longer, ...ENTRIES], "acceptance", 2).map(({ name }) => name), ["acceptance", "acceptance_low_friction"]);
+});
 test("every word has to be there, in any order", () => {
   assert.deepEqual(names("axle rear"), ["rear-axle", "Run 17"]);
   assert.deepEqual(names("axle nothing"), []);

@@ -17,11 +17,12 @@ export function found(entries: Entry[], text: string, most: number): Entry[] {
   return ranked.slice(0, most).map(({ entry }) => entry);
 }
 
-// 0 where a name begins with every word; more the farther inside they stand; null where one is missing.
+// -1 where a name is what was typed, 0 where it begins with every word; more the farther inside they stand;
+// null where one is missing.
 function rankOf(entry: Entry, words: string[]): number | null {
   if (entry.byName !== undefined && !isNamed(entry.byName.toLowerCase(), words)) return null;
   const name = entry.name.toLowerCase(), all = `${name} ${entry.about} ${entry.kind} ${entry.also ?? ""}`.toLowerCase();
-  let rank = 0;
+  let rank = name === words.join(" ") ? -1 : 0;
   for (const word of words) {
     if (name.startsWith(word)) continue;
     if (beginsAWord(name, word)) rank += 1;
