@@ -4,6 +4,7 @@ from hil.analysis.diagnosis._diagnose import diagnose
 from hil.analysis.diagnosis.data.gap import BANDS_HZ, CONDITIONS, ChannelGap, GapMap
 from hil.analysis.diagnosis.data.sanity import examine
 from hil.analysis.diagnosis.findings.consequences import why_no_step
+from hil.analysis.diagnosis.findings.named import Where
 from hil.analysis.diagnosis.findings.result import (
     Alternative,
     Diagnosis,
@@ -11,7 +12,6 @@ from hil.analysis.diagnosis.findings.result import (
     Overlay,
 )
 from hil.analysis.diagnosis.findings.separating import NO_TEST
-from hil.analysis.diagnosis.findings.words import Where
 from hil.analysis.missing_effects import INTERRUPTED, Curve
 from hil.analysis.stretches import LEAST_SAMPLES
 

@@ -3,12 +3,12 @@
 docs/explanation/how-a-name-is-found.md has its equations and their sources.
 """
 
-from hil.analysis.missing_effects._allowance import INTERRUPTED, OUT_OF_TIME
 from hil.analysis.missing_effects._explain import explain_gap
 from hil.analysis.missing_effects._hypothesis import TOLERANCE
 from hil.analysis.missing_effects._noise import proven_noise, white_level
 from hil.analysis.missing_effects._outcome import Curve, Named, Outcome, Replay
 from hil.analysis.missing_effects._series import Series, block_means, series_of
+from hil.analysis.missing_effects._simulations import INTERRUPTED, OUT_OF_TIME
 
 __all__ = [
     "INTERRUPTED",

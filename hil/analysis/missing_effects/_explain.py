@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.missing_effects._allowance import INTERRUPTED, OUT_OF_TIME, Allowance, OutOfTimeError
 from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._fit import Point, point_at, with_better_starts
 from hil.analysis.missing_effects._hypothesis import Hypothesis
@@ -20,6 +19,7 @@ from hil.analysis.missing_effects._outcome import Outcome, Replay
 from hil.analysis.missing_effects._problem import Problem, problem_of
 from hil.analysis.missing_effects._search import search
 from hil.analysis.missing_effects._series import Series
+from hil.analysis.missing_effects._simulations import INTERRUPTED, OUT_OF_TIME, Allowance, OutOfTimeError
 from hil.analysis.missing_effects._verdict import Judged, as_far_as_known, judged
 from hil.core.model import Model
 

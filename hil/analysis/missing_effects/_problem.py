@@ -9,11 +9,10 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.missing_effects._allowance import UNBOUNDED, Allowance
 from hil.analysis.missing_effects._hypothesis import Coordinate, Hypothesis
 from hil.analysis.missing_effects._noise import colour_of, with_motion
 from hil.analysis.missing_effects._series import Series, block_means
-from hil.analysis.missing_effects._shown import Shown
+from hil.analysis.missing_effects._simulations import UNBOUNDED, Allowance, Shown
 from hil.analysis.missing_effects._spectrum import Powers, Spectrum, of_noise, powers_of
 from hil.core.model import Model, TransferFunction
 from hil.core.runtime.thread_map import map_on_threads

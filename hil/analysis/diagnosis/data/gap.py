@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis.data.thresholds import (
+from hil.analysis.diagnosis.thresholds import (
     HIGH_SPEED,
     LARGE_TORQUE,
     REVERSAL_S,

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis.data.thresholds import (
+from hil.analysis.diagnosis.thresholds import (
     FREEZE_WINDOWS_S,
     FROZEN_S,
     HELD_STEPS,

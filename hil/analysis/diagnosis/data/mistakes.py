@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.data.held import apart_rad, around
-from hil.analysis.diagnosis.data.thresholds import (
+from hil.analysis.diagnosis.thresholds import (
     ALIKE,
     ALIKE_SPEEDS,
     ANY_SIZE,
@@ -31,6 +31,7 @@ from hil.analysis.diagnosis.data.thresholds import (
     GEAR_SIZE,
     LIKELIER,
     SHOWS,
+    SLOW_NOISE,
     TREND,
 )
 from hil.analysis.missing_effects import Series
@@ -146,12 +147,14 @@ def mistaken(model: Model, series: Sequence[Series], noise: Array) -> BadInputEr
 class _Pairs:
     """Of each pair and octave (pairs x bands): correlation of x and y, and log of y's size over x's.
 
-    `known`: one of them stands out of the noise. `silent` (2 x pairs x bands): x or y is noise where the
-    other stands out. `turns`: a speed goes further there than play and twist allow.
+    `noisy` is the share of both powers that may be noise. `known`: one of them stands out of it. `silent`
+    (2 x pairs x bands): x or y is noise where the other stands out. `turns`: a speed goes further there than
+    play and twist allow.
     """
 
     correlation: Array
     size: Array
+    noisy: Array
     known: Flags
     silent: Flags
     turns: Flags
@@ -164,8 +167,9 @@ class _Pairs:
         shown = np.asarray([xx > noise, yy > noise], dtype=bool)
         silent = np.asarray([xx < 2.0 * noise_x, yy < 2.0 * noise_y], dtype=bool) & shown[::-1]
         xx, yy = np.maximum(xx, _LEAST), np.maximum(yy, _LEAST)
+        noisy = SLOW_NOISE * (noise_x + noise_y) / (xx + yy)
         known = np.asarray(shown.any(axis=0), dtype=bool)
-        return cls(xy / np.sqrt(xx * yy), 0.5 * np.log(yy / xx), known, silent, turns > 0.0)
+        return cls(xy / np.sqrt(xx * yy), 0.5 * np.log(yy / xx), noisy, known, silent, turns > 0.0)
 
     def middle_sizes(self) -> Array:
         """Log of y over x of each pair (4,), octaves weighed by their correlation."""
@@ -192,7 +196,7 @@ def _by_size(pairs: _Pairs, pair: int, factor: float, mistake: _Mistake) -> Arra
         return np.full(len(_SIZES), _log_dead(pairs, pair, mistake.dead))
     correlation = pairs.correlation[pair, known] * np.sign(factor)
     away = pairs.size[pair, known] + np.log(abs(factor)) - _SIZES[:, None]
-    alike = np.sum(_log_alike(1.0 - correlation / np.cosh(away), pair), axis=1)
+    alike = np.sum(_log_alike(1.0 - correlation / np.cosh(away), _usual(pairs, pair)), axis=1)
     width = ANY_SIZE if pair in mistake.free else GEAR_SIZE if pair == _GEAR else FREE_SIZE
     own = np.exp(-0.5 * (_SIZES / width) ** 2)
     most = float(np.max(alike))
@@ -211,12 +215,16 @@ def _log_dead(pairs: _Pairs, pair: int, column: int) -> float:
         follows = pairs.known[other] & (1.0 - pairs.correlation[other] < ALIKE)
         moves = (pairs.silent[other, _GEAR] & pairs.turns[_GEAR]) | (pairs.silent[1, column] & follows)
     dead = moves if pair == _GEAR else np.asarray(pairs.silent[1, pair] & moves, dtype=bool)
-    return float(np.sum(_log_alike(np.where(dead[pairs.known[pair]], 0.0, 1.0), pair)))
+    return float(np.sum(_log_alike(np.where(dead[pairs.known[pair]], 0.0, 1.0), _usual(pairs, pair))))
 
 
-def _log_alike(unlike: Array, pair: int) -> Array:
-    """Log density of how unlike a pair is in an octave, over that of anything."""
-    usual = ALIKE_SPEEDS if pair == _GEAR else ALIKE
+def _usual(pairs: _Pairs, pair: int) -> Array:
+    """How unlike what belongs together is in the mean, in octaves that are known, noise included."""
+    return (ALIKE_SPEEDS if pair == _GEAR else ALIKE) + pairs.noisy[pair, pairs.known[pair]]
+
+
+def _log_alike(unlike: Array, usual: Array) -> Array:
+    """Log density of how unlike a pair is in each octave, over that of anything."""
     small = 2.0 / usual * np.exp(-unlike / usual)
     return np.asarray(np.log((1.0 - ANYTHING) * small + ANYTHING))
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.data.held import moves, refuse_held
 from hil.analysis.diagnosis.data.mistakes import mistaken
-from hil.analysis.diagnosis.data.thresholds import SLOW_S, SPEEDS_UP
+from hil.analysis.diagnosis.thresholds import SLOW_S, SPEEDS_UP
 from hil.analysis.missing_effects import Series, block_means, proven_noise, series_of
 from hil.analysis.plausible import refuse_implausible
 from hil.core.channels import INPUT, OUTPUTS

@@ -20,7 +20,7 @@ from hil.analysis.diagnosis.data.gap import (
 )
 from hil.analysis.diagnosis.findings.consequences import consequences
 from hil.analysis.diagnosis.findings.held_out import HeldOut, furthest
-from hil.analysis.diagnosis.findings.named import as_corrections, clean, worth_naming
+from hil.analysis.diagnosis.findings.named import Where, band_of_gap, clean, where_changed, worth_naming
 from hil.analysis.diagnosis.findings.result import (
     Alternative,
     Diagnosis,
@@ -28,10 +28,10 @@ from hil.analysis.diagnosis.findings.result import (
     Overlay,
     Start,
     Verdict,
+    as_corrections,
 )
 from hil.analysis.diagnosis.findings.separating import plan_file, plan_within_recordings, worth_a_plan
-from hil.analysis.diagnosis.findings.thresholds import CHANNEL_NOISES
-from hil.analysis.diagnosis.findings.words import Where, band_of_gap, where_changed
+from hil.analysis.diagnosis.thresholds import CHANNEL_NOISES
 from hil.analysis.missing_effects import OUT_OF_TIME, Curve, Named, Outcome, Replay, Series
 from hil.core.channels import ANGLES, OUTPUTS
 from hil.core.effects import EFFECTS

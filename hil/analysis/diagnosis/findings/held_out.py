@@ -9,9 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.data.gap import ChannelGap
-from hil.analysis.diagnosis.data.thresholds import SLOW_UNPROVEN
 from hil.analysis.diagnosis.findings.result import Verdict
-from hil.analysis.diagnosis.findings.thresholds import CHANNEL_NOISES, EVENT_NOISES, EVENT_S
+from hil.analysis.diagnosis.thresholds import CHANNEL_NOISES, EVENT_NOISES, EVENT_S, SLOW_UNPROVEN
 from hil.analysis.missing_effects import Series
 from hil.core.channels import OUTPUTS
 from hil.core.errors.wording import multiple

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -9,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.data.gap import BANDS_HZ, ChannelGap, GapMap
-from hil.analysis.diagnosis.findings.words import Where
+from hil.analysis.diagnosis.findings.named import Where
 from hil.analysis.missing_effects import Curve
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
@@ -37,6 +38,21 @@ class NamedEffect:
     def class_(self) -> str:
         """Its name and those that the data cannot tell from it; empty where it stands alone."""
         return " or ".join((EFFECTS[self.use.id].label(self.use.values), *self.alike)) if self.alike else ""
+
+
+def as_corrections(small: Sequence[NamedEffect]) -> dict[str, tuple[float, float, float]]:
+    """Effects too small to be named, as corrections of numbers that were where they do nothing.
+
+    Each as it was, as it is now, and its standard error.
+    """
+    found = {}
+    for effect in small:
+        about = [str(v) for v in effect.use.values.values() if isinstance(v, str)]
+        for name, error in effect.standard_error.items():
+            neutral = EFFECTS[effect.use.id].off if name in EFFECTS[effect.use.id].acting() else 0.0
+            key = ".".join([effect.use.id, *about, name])
+            found[key] = (neutral, float(effect.use.values[name]), error)
+    return found
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 import yaml
 
-from hil.analysis.diagnosis.findings.apart import apart, played
-from hil.analysis.diagnosis.findings.thresholds import (
+from hil.analysis.diagnosis.findings.consequences import apart, played
+from hil.analysis.diagnosis.thresholds import (
     DURATION_S,
     FAST_KM_H,
     FAST_RAD_S,

@@ -12,8 +12,7 @@ _MODULES = [
 def test_every_module_is_imported_by_a_test() -> None:
     tests = "".join(p.read_text(encoding="utf-8") for p in Path(__file__).parent.rglob("test_*.py"))
     known = set(re.findall(r"from hil\.analysis\.diagnosis\.([\w.]+) import", tests))
-    indirect = {"_diagnose", *(f"{room}.thresholds" for room in ("data", "findings"))}
     names = {
         ".".join(p.relative_to(_ROOT / "hil/analysis/diagnosis").with_suffix("").parts) for p in _MODULES
     }
-    assert sorted(names - known - indirect) == []
+    assert sorted(names - known - {"_diagnose"}) == []

@@ -3,18 +3,17 @@
 import re
 from pathlib import Path
 
-from hil.analysis.diagnosis.threshold import CHECKS
-from hil.analysis.diagnosis.threshold_page import _ROOMS, page, thresholds
+from hil.analysis.diagnosis.thresholds import CHECKS, page, thresholds
 
 _ROOT = Path(__file__).parents[4]
 
 
-def test_the_page_is_what_stands_in_the_rooms() -> None:
+def test_the_page_is_what_stands_in_the_module() -> None:
     assert (_ROOT / "docs/reference/thresholds.md").read_text(encoding="utf-8") == page()
 
 
 def test_every_check_of_a_threshold_exists() -> None:
-    told = {means.checked_by for room in _ROOMS.values() for _, _, means in thresholds(room)}
+    told = {means.checked_by for _, _, means in thresholds()}
     assert told == set(CHECKS)
     files = [command.split()[-1] for command in CHECKS.values() if command.endswith(".py")]
     assert [f for f in files if not (_ROOT / f).is_file()] == []

@@ -9,7 +9,7 @@ import pytest
 
 from hil.analysis.diagnosis import examine
 from hil.analysis.diagnosis.data.held import moves, refuse_held
-from hil.analysis.diagnosis.data.thresholds import FROZEN_S
+from hil.analysis.diagnosis.thresholds import FROZEN_S
 from hil.analysis.missing_effects import Series, proven_noise, series_of
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model, parameter_names

@@ -6,7 +6,7 @@ import pytest
 from hil.analysis.diagnosis.data.gap import ChannelGap
 from hil.analysis.diagnosis.findings.held_out import Event, HeldOut, furthest
 from hil.analysis.diagnosis.findings.result import Verdict
-from hil.analysis.diagnosis.findings.thresholds import CHANNEL_NOISES
+from hil.analysis.diagnosis.thresholds import CHANNEL_NOISES
 from hil.core.channels import OUTPUTS
 from tests.hil.analysis.diagnosis.one_recording import NOISE, one_series
 

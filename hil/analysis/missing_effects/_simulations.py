@@ -1,7 +1,12 @@
-"""Outputs that models showed of recordings, the latest ones: fits and rankings ask for them again."""
+"""What simulations may cost: how long a search goes on, and which outputs are kept to be asked for again.
+
+An answer that says less is better than none. Fits and rankings ask for the same outputs again and again.
+"""
 
 from __future__ import annotations
 
+import math
+import time
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Sequence
 from threading import Lock
@@ -13,6 +18,39 @@ Array = npt.NDArray[np.float64]
 Places = npt.NDArray[np.int64]
 
 _MOST_BYTES = 2e8
+INTERRUPTED, OUT_OF_TIME = "interrupted", "out of time"
+"""Why a search ended before it was through."""
+
+
+class OutOfTimeError(Exception):
+    """A search has used up what it was allowed."""
+
+
+class Allowance:
+    """Processor time of this process that a search may take, in s, from now on.
+
+    Processor time and not the clock on the wall: a busy machine shall not change what is found.
+    """
+
+    def __init__(self, seconds: float = math.inf) -> None:
+        self._ends = time.process_time() + seconds
+
+    def check(self) -> None:
+        """Go on, or not.
+
+        Raises:
+            OutOfTimeError: all of it is used up.
+        """
+        if time.process_time() > self._ends:
+            raise OutOfTimeError
+
+    def lift(self) -> None:
+        """Let what comes now take as long as it takes."""
+        self._ends = math.inf
+
+
+#: For who may take as long as it takes.
+UNBOUNDED = Allowance()
 
 
 class Shown:
