@@ -1,9 +1,10 @@
 """Angles as a ripple itself tells them, where noise lets those that are integrated walk off.
 
-A speed's white noise makes its integral a random walk of known size, which a high order turns into whole
-turns of phase. The walk joins the fit: its values at knots are linear to first order, with the walk's own
-density as their prior, so that a ripple that shows little moves no angle (it stands in place of the tracking
-of H. Vold, J. Leuridan, SAE 931288 (1993), which follows an amplitude).
+A speed's noise makes its integral a random walk of known size, which a high order turns into whole turns
+of phase. The walk joins the fit: its values at knots are linear to first order, with its own density as
+their prior, so that a ripple that shows little moves no angle (it stands in place of the tracking of H. Vold,
+J. Leuridan, SAE 931288 (1993), which follows an amplitude). Order and phase move along: a walk looks like
+both of them, so that they would stay where they were when angles had walked off.
 """
 
 from __future__ import annotations
@@ -41,14 +42,25 @@ def tracked(problem: Problem, point: Point) -> Problem:
     ratio = gear_ratio_of(problem.model) or 1.0
     by_noise = turned.weighed_by_noise()  # a walk is noise, not discrepancy
     walks = problem.each(lambda index: _Walk(by_noise, point, index))
-    angles = problem.each(
-        lambda index: walks[index].followed(uses, (turned.angles[index], problem.series[index].angles(ratio)))
-    )
+    read = problem.each(lambda index: problem.series[index].angles(ratio))
+    angles = problem.each(lambda index: walks[index].likelier(turned.angles[index], read[index]))
+    for use in uses:
+        angles = _Followed(by_noise, walks, use, angles).walked()
     return replace(turned, angles=tuple(angles))
 
 
+def errors_of(problem: Problem, point: Point, use: EffectUse) -> dict[str, float]:
+    """Standard errors of a ripple's order and phase where angles may have walked off."""
+    by_noise = problem.weighed_by_noise()
+    walks = problem.each(lambda index: _Walk(by_noise, point, index))
+    followed = _Followed(by_noise, walks, use, problem.angles)
+    ramp, offset = np.sqrt(np.diag(followed.step(problem.each(followed.linearised))[2]))
+    order = float(use.values["order"])
+    return {"order": order * float(ramp), "phase_rad": order * float(offset)}
+
+
 class _Walk:
-    """Angles of one recording beside a point of a fit."""
+    """Errors of one recording, by its angles, beside a point of a fit."""
 
     def __init__(self, problem: Problem, point: Point, index: int) -> None:
         self.problem, self.point, self.index = problem, point, index
@@ -57,64 +69,111 @@ class _Walk:
         self.packed = slots[None], problem.sensors(index, [sensor])
         self.basis = problem.start_basis(index, point.hypothesis, point.starts[index])[2]
 
-    def followed(self, uses: Sequence[EffectUse], begins: Sequence[Array]) -> Array:
-        """The likeliest angles, n x 2, from the first of two to begin with unless the other is likelier."""
-        first, other = begins
-        likelier = _half_square(self._left(other)) < _half_square(self._left(first)) - _SETTLED
-        angles = other if likelier else first
-        for use in uses:
-            angles = self._followed_by(use, angles)
-        return angles
+    def likelier(self, first: Array, other: Array) -> Array:
+        """The first angles, n x 2, unless others are likelier."""
+        is_other = _half_square(self.left(other)) < _half_square(self.left(first)) - _SETTLED
+        return other if is_other else first
 
-    def _followed_by(self, use: EffectUse, angles: Array) -> Array:
-        side = EFFECTS[use.id].law.follows
-        assert side is not None
-        column, count = _COLUMNS[side], len(angles)
-        knots = max(2, round(count * self.one.dt / _KNOTS_S) + 1)
-        hats = _hats(count, knots)
-        aside = _ASIDE_RAD / float(use.values["order"])
-        rate = self._variance_a_second(side) * count * self.one.dt / (knots - 1)
-        prior = np.diff(np.eye(knots), axis=0, prepend=np.eye(1, knots))[:, 1:] / np.sqrt(rate)
-        base, walked = angles, np.zeros(knots - 1)
-        left = self._left(angles)
-        for _ in range(_ROUNDS):
-            changes = []
-            for hat in hats[1:]:  # where a recording begins its angle is known
-                moved = angles.copy()
-                moved[:, column] += aside * hat
-                changes.append((self._left(moved) - left) / aside)
-            slopes = np.array(changes)
-            normal = slopes @ slopes.T + prior.T @ prior
-            step = -np.linalg.solve(normal, slopes @ left + prior.T @ (prior @ walked))
-            had = _half_square(left) + _half_square(prior @ walked)
-            tried = []
-            for part in _STEPS:
-                there, moved = walked + part * step, base.copy()
-                moved[:, column] += there @ hats[1:]
-                stays = self._left(moved)
-                tried.append((_half_square(stays) + _half_square(prior @ there), there, moved, stays))
-            best = min(tried, key=lambda one: one[0])
-            if best[0] > had - _SETTLED:
-                break
-            _, walked, angles, left = best
-        return angles
-
-    def _left(self, angles: Array) -> Array:
+    def left(self, angles: Array) -> Array:
         """Weighed errors with such angles, without what starts could do."""
         one, (slots, sensors) = self.one, self.packed
         begins = begins_of(slots, self.point.starts[self.index][None])
         shown = simulate_many(slots, one.torque, one.dt, begins, sensors, one.block, angles, one.load)
         return without(self.basis, self.problem.weighed(self.index, one.measured - shown)[0])
 
-    def _variance_a_second(self, side: Side) -> float:
-        """Of the walk of an integrated speed with white noise, rad²/s; next to none of an angle."""
+    def variance_a_second(self, side: Side) -> float:
+        """Of the walk of an integrated speed with noise, rad²/s; next to none of an angle."""
         ratio = gear_ratio_of(self.point.hypothesis.model()) or 1.0
         onto = np.array([1.0, ratio]) if side == "rotor" else np.array([1.0 / ratio, 1.0])
         recorded = np.isfinite(self.one.samples[0, :2])
-        noise = np.where(recorded, self.problem.noise[:2] * onto, np.inf)
+        square = self.problem.noise_in(self.point.errors)[0][:2]
+        noise = np.where(recorded, np.sqrt(square) * onto, np.inf)
         if self.one.of_angle.any():
             noise[:2][self.one.of_angle[:2]] *= _NO_WALK
         return float(np.min(noise) ** 2 * self.one.block * self.one.dt)
+
+
+_Linear = tuple[Array, Array]
+
+
+class _Followed:
+    """Walks of all recordings' angles at knots, and what they share: ramp and offset, by order and phase."""
+
+    def __init__(
+        self, problem: Problem, walks: Sequence[_Walk], use: EffectUse, begun: Sequence[Array]
+    ) -> None:
+        side = EFFECTS[use.id].law.follows
+        assert side is not None
+        self.problem, self.walks, self.begun, self.column = problem, walks, begun, _COLUMNS[side]
+        self.aside = _ASIDE_RAD / float(use.values["order"])
+        self.hats, self.along, self.priors = [], [], []
+        for walk, angles in zip(walks, begun, strict=True):
+            count, dt = len(angles), walk.one.dt
+            knots = max(2, round(count * dt / _KNOTS_S) + 1)
+            turned = np.interp(np.linspace(0.0, count - 1.0, knots), np.arange(count), angles[:, self.column])
+            rate = walk.variance_a_second(side) * count * dt / (knots - 1)
+            steps = np.diff(np.eye(knots), axis=0)[:, 1:] / np.sqrt(rate)  # an angle is known where it begins
+            self.hats.append(_hats(count, knots))
+            self.along.append(np.stack([turned, np.ones(knots)]))
+            self.priors.append(steps.T @ steps)
+        self.knots = [np.zeros(len(one) - 1) for one in self.hats]
+        self.shared = np.zeros(2)
+
+    def angles(self, index: int, knots: Array, shared: Array) -> Array:
+        """Of a recording that walk so, with what order and phase do."""
+        moved = self.begun[index].copy()
+        at = np.concatenate([[0.0], knots]) + shared @ self.along[index]
+        moved[:, self.column] += at @ self.hats[index]
+        return moved
+
+    def walked(self) -> list[Array]:
+        """The likeliest angles, n x 2 each, without what order and phase do."""
+        each = range(len(self.walks))
+        left = self.problem.each(lambda index: self.walks[index].left(self.begun[index]))
+        for _ in range(_ROUNDS):
+            linear = self.problem.each(self.linearised)
+            knots, shared, _ = self.step(linear)
+            had = sum(map(_half_square, left)) + self._prior(self.knots)
+            for part in _STEPS:
+                there = [self.knots[index] + part * knots[index] for index in each]
+                by = self.shared + part * shared
+                stays = self.problem.each(lambda i: self.walks[i].left(self.angles(i, there[i], by)))  # noqa: B023
+                has = sum(map(_half_square, stays)) + self._prior(there)
+                if has < had - _SETTLED:
+                    self.knots, self.shared, left = there, by, stays
+                    break
+            else:
+                break
+        return [self.angles(index, self.knots[index], np.zeros(2)) for index in each]
+
+    def linearised(self, index: int) -> _Linear:
+        """Errors of a recording, and their slopes by its knots (knots x errors)."""
+        walk, angles = self.walks[index], self.angles(index, self.knots[index], self.shared)
+        left, changes = walk.left(angles), []
+        for hat in self.hats[index]:
+            moved = angles.copy()
+            moved[:, self.column] += self.aside * hat
+            changes.append((walk.left(moved) - left) / self.aside)
+        return left, np.array(changes)
+
+    def step(self, linear: Sequence[_Linear]) -> tuple[list[Array], Array, Array]:
+        """Changes of all knots, of what is shared, and the covariance of the latter, walks being unknown."""
+        normal, gradient, parts = np.zeros((2, 2)), np.zeros(2), []
+        for (left, slopes), along, prior, knots in zip(
+            linear, self.along, self.priors, self.knots, strict=True
+        ):
+            shared, own = along @ slopes, slopes[1:]
+            inverse = np.linalg.inv(own @ own.T + prior)
+            right, both = own @ left + prior @ knots, own @ shared.T
+            normal += shared @ shared.T - both.T @ inverse @ both
+            gradient += shared @ left - both.T @ inverse @ right
+            parts.append((inverse, right, both))
+        covariance = np.asarray(np.linalg.pinv(normal, hermitian=True), dtype=float)
+        moved = -covariance @ gradient
+        return [-inverse @ (right + both @ moved) for inverse, right, both in parts], moved, covariance
+
+    def _prior(self, knots: Sequence[Array]) -> float:
+        return sum(0.5 * float(one @ prior @ one) for one, prior in zip(knots, self.priors, strict=True))
 
 
 def _hats(count: int, knots: int) -> Array:

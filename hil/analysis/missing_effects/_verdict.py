@@ -26,6 +26,7 @@ from hil.analysis.missing_effects._mismatch import as_the_base_has, is_far, mism
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains, weights_of
 from hil.analysis.missing_effects._orders import is_held, turns
 from hil.analysis.missing_effects._outcome import Named, Outcome, Replay, Verdict
+from hil.analysis.missing_effects._phase import errors_of
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._search import HALF, is_loss
 from hil.core.channels import OUTPUTS
@@ -98,8 +99,9 @@ def judged(of: Judged) -> Outcome:
     rivals = _alike(done, best, candidates, weights)
     effects: list[Named] = []
     doubtful: list[Named] = []
-    for index, use in enumerate(best.point.hypothesis.terms):
-        named = _named(best, index, use, at, candidates, weights, rivals, shares[index])
+    for index in range(len(best.names)):
+        errors = _errors(done.problem, at, index)
+        named = _named(best, index, errors, candidates, weights, rivals, shares[index])
         (effects if named.confidence >= HALF else doubtful).append(named)
     if _may_be_off(of, at):
         effects += mismatches(done, numbers, best, as_the_base)
@@ -241,8 +243,7 @@ def _without(done: Candidates, best: Candidate, index: int) -> Candidate:
 def _named(
     best: Candidate,
     index: int,
-    use: EffectUse,
-    at: Linearised,
+    errors: dict[str, float],
     candidates: Sequence[Candidate],
     weights: Array,
     rivals: Mapping[str, tuple[str, ...]],
@@ -251,15 +252,24 @@ def _named(
     label = best.names[index]
     alike = rivals.get(label, ())
     held = _held(label, candidates, weights, *alike)
+    names = [part for name in (label, *alike) for part in name.split(" + ")]
+    test = " Or: ".join(dict.fromkeys(EFFECTS[name.split("(")[0]].shown_by for name in names))
+    return Named(best.point.hypothesis.terms[index], held * share, errors, alike, test if alike else "")
+
+
+def _errors(problem: Problem, at: Linearised, index: int) -> dict[str, float]:
+    """Standard errors of an effect's numbers: by the fit, its law, and angles that may have walked off."""
+    use = at.point.hypothesis.terms[index]
     law = 0.0 if _is_linear(use) else _LAW  # nor are its numbers known better, but an order, which is counted
     errors = {
         name: float(np.hypot(error, (0.0 if name == "order" else law) * float(value)))
         for name, value in use.values.items()
         if np.isfinite(error := at.standard_error(index, name))
     }
-    names = [part for name in (label, *alike) for part in name.split(" + ")]
-    test = " Or: ".join(dict.fromkeys(EFFECTS[name.split("(")[0]].shown_by for name in names))
-    return Named(use, held * share, errors, alike, test if alike else "")
+    if EFFECTS[use.id].law.follows:
+        walked = errors_of(problem, at.point, use)
+        errors |= {name: max(errors[name], walked[name]) for name in walked if name in errors}
+    return errors
 
 
 def _remains(of: Judged, before: Candidate, after: Candidate, wrong: Array | float = 0.0) -> float:

@@ -220,7 +220,7 @@ def _log_dead(pairs: _Pairs, pair: int, column: int) -> float:
 
 def _usual(pairs: _Pairs, pair: int) -> Array:
     """How unlike what belongs together is in the mean, in octaves that are known, noise included."""
-    return (ALIKE_SPEEDS if pair == _GEAR else ALIKE) + pairs.noisy[pair, pairs.known[pair]]
+    return np.asarray((ALIKE_SPEEDS if pair == _GEAR else ALIKE) + pairs.noisy[pair, pairs.known[pair]])
 
 
 def _log_alike(unlike: Array, usual: Array) -> Array:

@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.missing_effects._fit import Point, point_at, with_better_starts
+from hil.analysis.missing_effects._candidates import Candidates
+from hil.analysis.missing_effects._fit import Point, fit, point_at, with_better_starts
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._noise import proven_noise
-from hil.analysis.missing_effects._phase import tracked
+from hil.analysis.missing_effects._phase import errors_of, tracked
 from hil.analysis.missing_effects._problem import Problem, problem_of
 from hil.analysis.missing_effects._series import series_of
 from hil.core.model import EffectUse, Model
@@ -62,15 +63,35 @@ def test_a_ripple_tells_the_angle_that_noise_lets_walk_off(seed: int) -> None:
     problem, (angle,) = _problem(seed)
     followed = tracked(problem, _point(problem, 1.5))
 
-    def off(one: Problem) -> float:
-        return float(np.sqrt(np.mean((one.angles[0][:, 1] - angle) ** 2)))
+    def off(one: Problem) -> float:  # beside what an order and a phase that are off do alike
+        rows = np.stack([angle, np.ones(len(angle))], axis=1)
+        away = one.angles[0][:, 1] - angle
+        return float(np.sqrt(np.mean((away - rows @ np.linalg.lstsq(rows, away, rcond=None)[0]) ** 2)))
 
     assert off(problem) > 0.05
     assert off(followed) < 0.4 * off(problem)
-    assert followed.mean_square(_point(followed, 1.5).errors)[0] < 1.3 * problem.noise[0] ** 2
+    fitted = fit(followed, _point(followed, 1.5))  # order and phase move with their angles
+    assert followed.mean_square(fitted.errors)[0] < 1.3 * problem.noise[0] ** 2
 
 
 def test_a_ripple_that_shows_nothing_moves_no_angle() -> None:
     problem, _ = _problem(1)
     (before,), (after,) = (tracked(problem, _point(problem, size)).angles for size in (1e-9, 1e-8))
     assert np.max(np.abs(after - before)) < 1e-3
+
+
+@pytest.mark.parametrize("seed", range(3, 7))
+def test_an_order_is_known_as_far_as_angles_are(seed: int) -> None:
+    """From an order that is off, fits and angles by turns end within errors that are small."""
+    problem, _ = _problem(seed)
+    done = Candidates(problem)
+    begins = Hypothesis(_CHAIN, dict(_CHAIN.parameters)).with_term(_ripple(1.4))
+    best = done.fitted(begins.with_values(0, {"order": _ORDER - 3e-3}, frozenset()), None)
+    for _ in range(4):
+        done.go_on_from(best)
+        best = done.fitted(best.point.hypothesis, best)
+    errors = errors_of(done.problem, best.point, best.point.hypothesis.terms[0])
+    found = best.point.hypothesis.terms[0].values
+    assert abs(float(found["order"]) - _ORDER) < 3.0 * errors["order"]
+    assert abs(float(found["phase_rad"]) - 0.4) < 3.0 * errors["phase_rad"]
+    assert 1e-4 < errors["order"] < 2e-2
