@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.missing_effects._fit import Point, without
+from hil.analysis.missing_effects._hypothesis import tolerance_of
 from hil.analysis.missing_effects._orders import Side, turned_with
 from hil.analysis.missing_effects._problem import Problem
 from hil.core.effects import EFFECTS
@@ -50,12 +51,17 @@ def tracked(problem: Problem, point: Point) -> Problem:
 
 
 def errors_of(problem: Problem, point: Point, use: EffectUse) -> dict[str, float]:
-    """Standard errors of a ripple's order and phase where angles may have walked off."""
+    """Standard errors of a ripple's order and phase where angles may have walked off.
+
+    An order of a side whose speed was not recorded is known as far as the gear ratio.
+    """
     by_noise = problem.weighed_by_noise()
     walks = problem.each(lambda index: _Walk(by_noise, point, index))
     followed = _Followed(by_noise, walks, use, problem.angles)
     ramp, offset = np.sqrt(np.diag(followed.step(problem.each(followed.linearised))[2]))
-    order = float(use.values["order"])
+    order, column = float(use.values["order"]), 1 - followed.column  # of a speed
+    if not all(one.has[column] for one in problem.series):
+        ramp = np.hypot(ramp, tolerance_of(problem.model, "gear_ratio"))
     return {"order": order * float(ramp), "phase_rad": order * float(offset)}
 
 
@@ -86,7 +92,7 @@ class _Walk:
         ratio = gear_ratio_of(self.point.hypothesis.model()) or 1.0
         onto = np.array([1.0, ratio]) if side == "rotor" else np.array([1.0 / ratio, 1.0])
         recorded = np.isfinite(self.one.samples[0, :2])
-        square = self.problem.noise_in(self.point.errors)[0][:2]
+        square = self.problem.slowest_noise(self.point.errors)[:2]
         noise = np.where(recorded, np.sqrt(square) * onto, np.inf)
         if self.one.of_angle.any():
             noise[:2][self.one.of_angle[:2]] *= _NO_WALK

@@ -83,7 +83,7 @@ class Problem:
         return 1.0 + self.series[0].block * (_SLOW_NOISE**2 - 1.0)
 
     def noise_in(self, errors: Sequence[Array]) -> tuple[Array, Array]:
-        """Mean square that is noise, (3,), and the most that may be noise.
+        """Mean square that is noise beyond doubt, (3,), and the most that may be noise.
 
         What quiet windows show as well; where all windows are alike white noise, and what is usual.
         """
@@ -92,7 +92,14 @@ class Problem:
             return self.noise**2, most
         powers = self.powers(errors)
         level, upper = (powers.mean_square(one) for one in powers.quiet(self.noise))
-        return np.minimum(level, most), np.minimum(upper, most)
+        upper = np.minimum(upper, most)
+        return np.maximum(2.0 * np.minimum(level, most) - upper, self.noise**2), upper
+
+    def slowest_noise(self, errors: Sequence[Array]) -> Array:
+        """Power of noise in the lowest octave, (3,), which an integral of a speed sees."""
+        if not self.tells_noise:
+            return self.noise**2
+        return np.asarray(self.powers(errors).quiet(self.noise)[0, :, 0])
 
     def most_to_gain(self, errors: Sequence[Array]) -> float:
         """Growth of log L if no more than noise stayed in any octave."""
