@@ -94,7 +94,7 @@ def diagnosis_of(
         overlays=fitted.overlays,
         notes=(
             *notes,
-            *_classes(found.effects),
+            *_classes([f for f, one in zip(found.effects, named, strict=True) if one in stated]),
             *_steadied(found),
             *([doubt] if doubt else ()),
             *([ASK_FOR_CHAIN] if base.transfer_functions and verdict == "unknown" else ()),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -75,3 +76,16 @@ def test_an_effect_smaller_than_what_is_worth_a_name_is_a_correction() -> None:
     assert small.verdict == "none"
     assert small.effects == ()
     assert small.parameter_updates["coulomb_friction.torque_nm"][1] == pytest.approx(1.39, rel=0.02)
+
+
+def test_a_class_is_noted_of_what_is_stated_and_not_of_what_is_too_small() -> None:
+    fit, model = recording(0.54, 2.17, 1.39, 0.0, torque_nm=_TORQUE_NM, seed=0), base(0.54, 2.17)
+    outcome = explain_gap(model, series_of(model, [fit]))
+    effects = [
+        replace(one, alike=("viscous_drag",)) for one in outcome.effects if one.id == "coulomb_friction"
+    ]
+    both = [
+        diagnosis_of(replace(outcome, effects=tuple(effects)), model, Asked.checked({}, least))
+        for least in ({}, {"coulomb_friction": 10.0})
+    ]
+    assert [any("cannot tell" in note for note in one.notes) for one in both] == [True, False]
