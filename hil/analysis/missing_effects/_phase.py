@@ -124,6 +124,7 @@ class _Followed:
             self.priors.append(steps.T @ steps)
         self.knots = [np.zeros(len(one) - 1) for one in self.hats]
         self.shared = np.zeros(2)
+        self.left = problem.each(lambda index: walks[index].left(begun[index]))
 
     def angles(self, index: int, knots: Array, shared: Array) -> Array:
         """Of a recording that walk so, with what order and phase do."""
@@ -135,18 +136,17 @@ class _Followed:
     def walked(self) -> list[Array]:
         """The likeliest angles, n x 2 each, without what order and phase do."""
         each = range(len(self.walks))
-        left = self.problem.each(lambda index: self.walks[index].left(self.begun[index]))
         for _ in range(_ROUNDS):
             linear = self.problem.each(self.linearised)
             knots, shared, _ = self.step(linear)
-            had = sum(map(_half_square, left)) + self._prior(self.knots)
+            had = sum(map(_half_square, self.left)) + self._prior(self.knots)
             for part in _STEPS:
                 there = [self.knots[index] + part * knots[index] for index in each]
                 by = self.shared + part * shared
                 stays = self.problem.each(lambda i: self.walks[i].left(self.angles(i, there[i], by)))  # noqa: B023
                 has = sum(map(_half_square, stays)) + self._prior(there)
                 if has < had - _SETTLED:
-                    self.knots, self.shared, left = there, by, stays
+                    self.knots, self.shared, self.left = there, by, stays
                     break
             else:
                 break
@@ -155,7 +155,7 @@ class _Followed:
     def linearised(self, index: int) -> _Linear:
         """Errors of a recording, and their slopes by its knots (knots x errors)."""
         walk, angles = self.walks[index], self.angles(index, self.knots[index], self.shared)
-        left, changes = walk.left(angles), []
+        left, changes = self.left[index], []
         for hat in self.hats[index]:
             moved = angles.copy()
             moved[:, self.column] += self.aside * hat

@@ -87,10 +87,12 @@ class Problem:
 
         What quiet windows show as well; where all windows are alike white noise, and what is usual.
         """
+        return self._noise_in(self.powers(errors))
+
+    def _noise_in(self, powers: Powers) -> tuple[Array, Array]:
         most = self.slow_noise * self.noise**2
         if not self.tells_noise:
             return self.noise**2, most
-        powers = self.powers(errors)
         level, upper = (powers.mean_square(one) for one in powers.quiet(self.noise))
         upper = np.minimum(upper, most)
         return np.maximum(2.0 * np.minimum(level, most) - upper, self.noise**2), upper
@@ -109,9 +111,10 @@ class Problem:
 
     def is_noise(self, errors: Sequence[Array]) -> bool:
         """Whether errors are at most what is proven, or usual for slow noise."""
-        square = self.mean_square(errors)
+        powers = self.powers(errors)
+        square = powers.mean_square()
         there = np.isfinite(square)
-        return bool(np.all(square[there] <= self.noise_in(errors)[1][there]))
+        return bool(np.all(square[there] <= self._noise_in(powers)[1][there]))
 
     def powers(self, errors: Sequence[Array], *, once: bool = False) -> Powers:
         """Of errors of each recording, where they count.

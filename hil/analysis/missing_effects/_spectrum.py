@@ -229,8 +229,7 @@ class Powers:
             for band in used[1:] or used:
                 counts = self.bins[:, channel, band] > 0.0
                 shape = self.bins[counts, channel, band].mean() / _LAPPED / _HANN_BINS
-                usual = gamma.ppf(_QUIET, shape)
-                slope = usual * gamma.pdf(usual, shape)
+                usual, slope = _lower_quartile(float(shape))
                 error = np.sqrt(_QUIET * (1.0 - _QUIET) / counts.sum()) / slope
                 level = np.quantile(self.power[counts, channel, band], _QUIET) / usual * shape
                 over = min(max(float(level) / white[channel, band], 1.0), most)
@@ -289,6 +288,13 @@ def _unseen(blocks: int, rate_hz: float) -> Array:
         seen[first : first + length] += window**2
     rises = seen[: length // 2] * length / 2.0
     return np.asarray(np.sqrt(np.maximum(1.0 - rises, 0.0)))
+
+
+@lru_cache
+def _lower_quartile(shape: float) -> tuple[float, float]:
+    """Of a gamma distribution, and its density there times that."""
+    usual = float(gamma.ppf(_QUIET, shape))
+    return usual, usual * float(gamma.pdf(usual, shape))
 
 
 def powers_of(

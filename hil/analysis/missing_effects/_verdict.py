@@ -285,7 +285,7 @@ def _remains(of: Judged, before: Candidate, after: Candidate, wrong: Array | flo
     if done.score(after) < done.score(before):
         return 1.0
     had, has = of.left(before), of.left(after) + wrong
-    if after.prior - before.prior > done.cost_of_a_number(after) and done.score(after) > done.score(before):
+    if after.prior - before.prior > done.cost_of_a_number(after):
         had = np.fmax(had, of.left(done.at(_fewer(after.point.hypothesis, before.names), after)))
     there = np.isfinite(has)
     noise, most = problem.noise_in(after.point.errors)
