@@ -31,7 +31,7 @@ Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _DRAWS = 200  # starts whose responses are looked at
-_STARTS = 3  # of these are fitted
+_STARTS = 2  # of these are fitted
 _SPREAD = np.log(3.0)  # of a start's numbers, as of their prior
 _EVALUATIONS = 20
 _STEP = 1e-5  # of a coordinate, for derivatives

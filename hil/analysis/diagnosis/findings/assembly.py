@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -77,13 +77,16 @@ def diagnosis_of(
     doubt = unseen.words(verdict)
     start, updates = _numbers(found, fitted)
     stated = effects if verdict == "named" else ()
+    small_too = {
+        name for f, one in zip(found.effects, named, strict=True) if one in small for name in f.alike
+    }
     return Diagnosis(
         verdict=verdict,
         base=base,
         model=found.model,
         effects=stated,
         parameter_updates=updates | as_corrections(small),
-        alternatives=_alternatives(found, fitted),
+        alternatives=_alternatives(found, fitted, small_too),
         gap_before=fitted.before,
         gap_after=fitted.after,
         holdout_before=held.before,
@@ -254,15 +257,20 @@ def _numbers(found: Outcome, shown: _Shown) -> tuple[Start | None, dict[str, tup
     return Start(moved, tuple(t.name for t in shown.traces), gaps), {}
 
 
-def _alternatives(found: Outcome, shown: _Shown) -> tuple[Alternative, ...]:
-    """Other names, each with the test that separates it from what is given back."""
+def _alternatives(found: Outcome, shown: _Shown, small: Collection[str]) -> tuple[Alternative, ...]:
+    """Other names, each with the test that separates it from what is given back.
+
+    Args:
+        small: names of the class of a correction, which are too small as well.
+    """
     first = found.effects[0].id if found.effects else "numbers"
     shared = {name: one.confidence for one in found.effects for name in one.alike}
     ratio = gear_ratio_of(found.model) or 1.0
     others = []
     for one in found.alternatives:
-        confidence = shared.get(EFFECTS[one.id].label(one.use.values), one.confidence)
-        if found.effects and not round(confidence, 2):
+        label = EFFECTS[one.id].label(one.use.values)
+        confidence = shared.get(label, one.confidence)
+        if label in small or (found.effects and not round(confidence, 2)):
             continue  # it would be shown as 0
         text, plan = one.separating_test or EFFECTS[one.id].shown_by, ""
         if one.model is not None and worth_a_plan(confidence, shown.traces):

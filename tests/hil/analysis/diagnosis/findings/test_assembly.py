@@ -13,6 +13,7 @@ from hil.analysis.diagnosis.asked import Asked
 from hil.analysis.diagnosis.findings.assembly import diagnosis_of
 from hil.analysis.missing_effects import explain_gap, series_of
 from hil.core.effects import EFFECTS
+from hil.core.model import EffectUse
 from tests.hil.analysis.missing_effects.turning_mass import base, recording
 
 _TORQUE_NM = 20.0
@@ -78,7 +79,7 @@ def test_an_effect_smaller_than_what_is_worth_a_name_is_a_correction() -> None:
     assert small.parameter_updates["coulomb_friction.torque_nm"][1] == pytest.approx(1.39, rel=0.02)
 
 
-def test_a_class_is_noted_of_what_is_stated_and_not_of_what_is_too_small() -> None:
+def test_a_class_is_stated_of_what_is_named_and_not_of_what_is_too_small() -> None:
     fit, model = recording(0.54, 2.17, 1.39, 0.0, torque_nm=_TORQUE_NM, seed=0), base(0.54, 2.17)
     outcome = explain_gap(model, series_of(model, [fit]))
     effects = [
@@ -89,3 +90,11 @@ def test_a_class_is_noted_of_what_is_stated_and_not_of_what_is_too_small() -> No
         for least in ({}, {"coulomb_friction": 10.0})
     ]
     assert [any("cannot tell" in note for note in one.notes) for one in both] == [True, False]
+    drag = replace(effects[0], use=EffectUse("viscous_drag", {"coefficient_nms_rad": 0.1}), alike=())
+    both = [
+        diagnosis_of(
+            replace(outcome, effects=tuple(effects), alternatives=(drag,)), model, Asked.checked({}, least)
+        )
+        for least in ({}, {"coulomb_friction": 10.0})
+    ]
+    assert [[other.use.id for other in one.alternatives] for one in both] == [["viscous_drag"], []]
