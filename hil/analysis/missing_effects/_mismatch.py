@@ -13,9 +13,10 @@ from hil.analysis.missing_effects._hypothesis import TOLERANCE, Hypothesis
 from hil.analysis.missing_effects._odds import ALIKE, Candidate
 from hil.analysis.missing_effects._outcome import Named
 from hil.analysis.missing_effects._problem import Problem
-from hil.analysis.missing_effects._screen import NUMBERS
+from hil.analysis.missing_effects._screen import NUMBERS, Scene, may_join
 from hil.analysis.missing_effects._search import HALF, is_loss
 from hil.analysis.missing_effects._spectrum import RIGHT_TO
+from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
 
 
@@ -45,6 +46,32 @@ def as_the_base_has(done: Candidates, best: Candidate) -> frozenset[str]:
     return frozenset(found)
 
 
+def gains_instead(done: Candidates, best: Candidate) -> dict[str, tuple[str, ...]]:
+    """Of each number that moved where nothing is named: gains that do as well with what the base has.
+
+    A gear ratio and a gain of one of two speeds show the same: only the prior knows that teeth were counted.
+    """
+    hypothesis, found = best.point.hypothesis, {}
+    moved = [one for one in done.problem.coordinates(hypothesis) if np.log1p(one.away(0.0) ** 2) > ALIKE]
+    for name in [one.name for one in moved if not best.names]:
+        back = _with_number(hypothesis, name, done.problem.model.parameters[name])
+        tried = [done.fitted(back.with_term(use), best, held=frozenset({name})) for use in _gains(done, back)]
+        alike = [one for one in tried if done.score(one) > done.score(best) - ALIKE]
+        found[name] = tuple(one.names[0] for one in sorted(alike, key=done.score, reverse=True))
+    return found
+
+
+def _gains(done: Candidates, hypothesis: Hypothesis) -> list[EffectUse]:
+    """Gains that may join, of each channel that was recorded."""
+    scene = Scene(done.problem, hypothesis)
+    effects = [one for one in EFFECTS.values() if one.off == 1.0 and may_join(one, hypothesis)]
+    return [
+        EffectUse(one.id, {one.parameters[0].name: 1.0} | about)
+        for one in effects
+        for about in ([{"channel": name} for name in scene.channels] if one.text_parameters else [{}])
+    ]
+
+
 def numbers_of(at: Linearised, asked: Model) -> dict[str, tuple[float, float, float]]:
     """Numbers of the base: as it came, as found, standard error."""
     return {
@@ -68,11 +95,13 @@ def mismatches(
     numbers: Mapping[str, tuple[float, float, float]],
     best: Candidate,
     as_the_base: frozenset[str],
+    gains: Mapping[str, tuple[str, ...]],
 ) -> list[Named]:
     """Numbers that are wrong by more than their tolerance and doubt, each with the probability of that.
 
-    Beside an effect, which bends numbers as well, those that are effects by themselves: a dead time, a drag.
-    One that moves no channel by more than what no model is right to says nothing.
+    It is shared with `gains` that explain the data as well. Beside an effect, which bends numbers as well,
+    those that are effects by themselves: a dead time, a drag. One that moves no channel by more than what no
+    model is right to says nothing.
     """
     from scipy.special import ndtr
 
@@ -88,6 +117,8 @@ def mismatches(
                     EffectUse("parameter_mismatch", {"parameter": name, "value": value}),
                     sure,
                     {"value": error},
+                    alike := gains.get(name, ()),
+                    EFFECTS["sensor_gain"].shown_by if alike else "",
                 )
             )
     return found

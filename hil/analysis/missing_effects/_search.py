@@ -61,20 +61,10 @@ def search(done: Candidates, show: Callable[[str], None]) -> None:
         was_weak, weak = weak, remains(had, has, *problem.noise_in(grown.point.errors)) > HALF
         if weak and was_weak:
             break  # of two that go together the first may take off less than half, the second does not
-        best = _pruned(done, _without_chance(done, grown))
+        best = _pruned(done, grown)
         done.go_on_from(best)
         if any(EFFECTS[use.id].law.follows for use in best.point.hypothesis.terms):
             best = _with_better_angles(done, best)
-
-
-def _without_chance(done: Candidates, grown: Candidate) -> Candidate:
-    """A grown hypothesis, or the one before it where that does as well from the numbers of the grown one.
-
-    A name that takes nothing off may lead a fit out of a minimum that it was stuck in. Optional numbers that
-    were opened beside the new name may be all that it brought.
-    """
-    before = grown.point.hypothesis.without(len(grown.names) - 1)
-    return max(grown, done.fitted(before, grown), key=done.score)
 
 
 def _with_better_angles(done: Candidates, best: Candidate) -> Candidate:
@@ -359,8 +349,12 @@ def _opened_of(done: Candidates, best: Candidate, index: int, show: Callable[[st
 
 
 def _pruned(done: Candidates, best: Candidate) -> Candidate:
-    """Without those effects that later ones made needless."""
-    for index in reversed(range(len(best.names) - 1)):
+    """Without those effects that later ones made needless, and without the last one if it takes nothing off.
+
+    It may lead a fit out of a minimum that it was stuck in, and optional numbers that were opened beside it
+    may be all that it brought.
+    """
+    for index in reversed(range(len(best.names))):
         fewer = done.fitted(best.point.hypothesis.without(index), best)
         if done.score(fewer) >= done.score(best):
             return _pruned(done, fewer)

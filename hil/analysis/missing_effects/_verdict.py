@@ -20,9 +20,15 @@ import numpy.typing as npt
 from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._curve import curves_of
 from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised, point_at
-from hil.analysis.missing_effects._hypothesis import Hypothesis
+from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of
 from hil.analysis.missing_effects._lasting import constancy, held_against_drift
-from hil.analysis.missing_effects._mismatch import as_the_base_has, is_far, mismatches, numbers_of
+from hil.analysis.missing_effects._mismatch import (
+    as_the_base_has,
+    gains_instead,
+    is_far,
+    mismatches,
+    numbers_of,
+)
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains, weights_of
 from hil.analysis.missing_effects._orders import is_held, turns
 from hil.analysis.missing_effects._outcome import Named, Outcome, Replay, Verdict
@@ -82,7 +88,9 @@ def judged(of: Judged) -> Outcome:
     if len(likeliest.names) > 1 and not done.problem.is_noise(likeliest.point.errors):
         _swapped(done, likeliest, is_loss)
     at = linearised(done.weighed_as(done.best, once=True), done.best.point)
-    as_the_base = as_the_base_has(done, done.best) if _may_be_off(of, at) else frozenset[str]()
+    may_be_off = _may_be_off(of, at)
+    as_the_base = as_the_base_has(done, done.best) if may_be_off else frozenset[str]()
+    gains = gains_instead(done, done.best) if may_be_off else {}
     best, at, shares = _worth_telling(of, done.best)
     _swapped(done, best)
     likelier = max((one for one in done.found.values() if len(one.names) == len(best.names)), key=done.score)
@@ -104,7 +112,7 @@ def judged(of: Judged) -> Outcome:
         named = _named(best, index, errors, candidates, weights, rivals, shares[index])
         (effects if named.confidence >= HALF else doubtful).append(named)
     if _may_be_off(of, at):
-        effects += mismatches(done, numbers, best, as_the_base)
+        effects += mismatches(done, numbers, best, as_the_base, gains)
     if done.problem.is_noise(best.point.errors):
         effects += _roundings(done, float(weights[candidates.index(best)]))
     verdict: Verdict = "unknown"
@@ -152,17 +160,21 @@ def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, Linearised, 
             return best, at, []
         fewer = [_without(of.done, best, index) for index in range(len(best.names))]
         wrong = _wrong_by_laws(of, best, fewer)
-        shares = [
-            (1.0 - _remains(of, fewer[index], best, wrong))
-            * constancy(of.done.problem, at, index, of.done.cost_of_a_number(best))
-            if _is_line(of.done, at, index)
-            else 0.0
-            for index in range(len(best.names))
-        ]
+        shares = [_share(of, one, best, at, index, wrong) for index, one in enumerate(fewer)]
         least = int(np.argmin(shares))
         if shares[least] >= HALF:
             return best, at, shares
         best = _without(of.done, best, least)
+
+
+def _share(
+    of: Judged, fewer: Candidate, best: Candidate, at: Linearised, index: int, wrong: Array | float = 0.0
+) -> float:
+    """What an effect takes off over that and what stays, where it lasts; 0 of a ripple that is none."""
+    if not _is_line(of.done, at, index):
+        return 0.0
+    lasts = constancy(of.done.problem, at, index, of.done.cost_of_a_number(best))
+    return (1.0 - _remains(of, fewer, best, wrong)) * lasts
 
 
 def _wrong_by_laws(of: Judged, best: Candidate, fewer: Sequence[Candidate]) -> Array:
@@ -279,12 +291,13 @@ def _remains(of: Judged, before: Candidate, after: Candidate, wrong: Array | flo
     more than fits to noise so slow bring. All of it where the score fell: what was dropped beside it paid.
 
     Args:
-        wrong: variance that stays by what laws get wrong, (3,), whatever takes it off.
+        wrong: variance that stays by what laws get wrong, (3,), of that which is taken off.
     """
     problem, done = of.done.problem, of.done
     if done.score(after) < done.score(before):
         return 1.0
-    had, has = of.left(before), of.left(after) + wrong
+    had, has = of.left(before), of.left(after)
+    has = has + np.clip(had - has, 0.0, wrong)
     if after.prior - before.prior > done.cost_of_a_number(after):
         had = np.fmax(had, of.left(done.at(_fewer(after.point.hypothesis, before.names), after)))
     there = np.isfinite(has)
@@ -379,7 +392,7 @@ def _late_outputs(done: Candidates, rest: Hypothesis, use: EffectUse) -> Hypothe
 def _others(of: Judged, best: Candidate, candidates: Sequence[Candidate], weights: Array) -> list[Named]:
     """Names that stand in place of one of the best hypothesis, by the weight of such hypotheses.
 
-    Where that has no name, times the share of the misfit that goes with them, as of a name that is given.
+    Where that has no name, times the share of the misfit that goes with each, as of a name that is given.
     """
     held: dict[str, tuple[float, EffectUse, Candidate]] = {}
     for one, weight in zip(candidates, weights, strict=True):
@@ -392,7 +405,12 @@ def _others(of: Judged, best: Candidate, candidates: Sequence[Candidate], weight
     ranked = sorted(held.values(), key=lambda pair: -pair[0])
     found = []
     for weight, use, one in ranked[:_SHOWN]:
-        share = 1.0 if best.names else 1.0 - _remains(of, best, one)
+        share = 1.0
+        if not best.names:
+            at = linearised(of.done.weighed_as(one, once=True), one.point)
+            index = one.names.index(label_of(use))
+            fewer = of.done.found.get(tuple(sorted({*one.names} - {label_of(use)})), best)
+            share = _share(of, fewer, one, at, index)
         if weight * share > 0.0:
             model = one.point.hypothesis.model()
             found.append(Named(use, weight * share, {}, (), EFFECTS[use.id].shown_by, model))

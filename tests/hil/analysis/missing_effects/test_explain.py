@@ -65,6 +65,19 @@ def test_a_right_base_has_nothing_missing_and_a_wrong_number_is_named() -> None:
     assert wrong.effects[0].use.values["value"] == pytest.approx(2.17, rel=0.001)
 
 
+def test_a_gear_ratio_that_moved_shares_its_name_with_gains_of_both_speeds() -> None:
+    """Of two speeds the data know only the ratio."""
+    fit = recording(0.54, 2.17)
+    rng = np.random.default_rng(9)
+    fit.channels["wheel_speed_rad_s"] = 1.03 * fit["motor_speed_rad_s"] + rng.normal(0.0, 0.02, fit.samples)
+    model = base(0.54, 2.17)
+    (ratio,) = explain_gap(model, series_of(model, [fit])).effects
+    assert ratio.use.values["parameter"] == "gear_ratio"
+    assert ratio.use.values["value"] == pytest.approx(1.0 / 1.03, rel=1e-3)
+    assert ratio.alike == ("sensor_gain(wheel_speed_rad_s)", "sensor_gain(motor_speed_rad_s)")
+    assert ratio.separating_test
+
+
 def test_a_recording_without_outputs_is_refused() -> None:
     whole = recording(0.54, 2.17, seconds=5.0)
     channels = {name: whole[name] for name in ("time_s", "motor_torque_ref_nm")}

@@ -7,9 +7,11 @@ import pytest
 
 from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._hypothesis import Hypothesis
-from hil.analysis.missing_effects._search import _among_losses
+from hil.analysis.missing_effects._search import _among_losses, _pruned
 from hil.core.model import EffectUse, Model
 from tests.hil.analysis.missing_effects.chain import RIGID, driven, problem_about
+from tests.hil.analysis.missing_effects.turning_mass import base as mass
+from tests.hil.analysis.missing_effects.turning_mass import recording
 from tests.hil.analysis.missing_effects.two_masses import base, braked
 
 
@@ -30,6 +32,19 @@ def test_a_loss_that_bends_gives_way_to_a_dry_and_a_viscous_one() -> None:
     assert sizes["load_viscous_drag"]["coefficient_nms_rad"] == pytest.approx(0.7, rel=0.06)
     dry = sizes.get("load_coulomb_friction", {}).get("torque_nm")
     assert (dry or sizes["running_resistance"]["rolling_nm"]) == pytest.approx(0.6, rel=0.06)
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_a_name_that_takes_nothing_off_leaves_though_it_came_last(order: tuple[int, int]) -> None:
+    """What was opened beside it may be all that it brought."""
+    model = mass(0.54, 2.17)
+    done = Candidates(problem_about(model, recording(0.54, 2.17, 1.39)))
+    friction = EffectUse("coulomb_friction", {"torque_nm": 1.39})
+    air = EffectUse("running_resistance", {"rolling_nm": 0.0, "aero_nms2_rad2": 1e-5})
+    both = Hypothesis(model, dict(model.parameters))
+    for index in order:
+        both = both.with_term((friction, air)[index])
+    assert _pruned(done, done.fitted(both, None)).names == ("coulomb_friction",)
 
 
 def test_a_dead_time_goes_to_the_likeliest_place_within_its_sample() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._fit import point_at
 from hil.analysis.missing_effects._hypothesis import Hypothesis
-from hil.analysis.missing_effects._verdict import _alike
+from hil.analysis.missing_effects._verdict import Judged, _alike, _remains
 from hil.core.model import EffectUse
 from tests.hil.analysis.missing_effects.chain import problem_about
 from tests.hil.analysis.missing_effects.two_masses import base, braked
@@ -15,6 +15,26 @@ from tests.hil.analysis.missing_effects.two_masses import base, braked
 _ROLLING = EffectUse("running_resistance", {"rolling_nm": 0.4, "aero_nms2_rad2": 0.007})
 _VISCOUS = EffectUse("load_viscous_drag", {"coefficient_nms_rad": 0.1})
 _DRY = EffectUse("coulomb_friction", {"torque_nm": 0.4})
+
+
+def test_what_a_law_gets_wrong_elsewhere_takes_nothing_from_an_effect_of_one_channel() -> None:
+    """An offset of the wheel's speed, beside a law whose error may leave three noises in the other speed."""
+    model = base()
+    problem = problem_about(model, braked(0.0, 0.7))
+    done = Candidates(problem)
+    numbers = Hypothesis(model, dict(model.parameters))
+    offset = EffectUse("sensor_offset", {"channel": "wheel_speed_rad_s", "offset": 0.1})
+    before, after = (
+        done.judged(point_at(problem, one))
+        for one in (numbers, numbers.with_term(_VISCOUS).with_term(offset))
+    )
+    assert done.score(after) > done.score(before)
+    had, has = (problem.noise**2 * np.array(times) for times in ([1.0, 1000.0, 1.0], [1.0, 1.0, 1.0]))
+    of = Judged(model, done, lambda one: had if one is before else has, (), ())
+    wrong = problem.noise**2 * np.array([3.0, 3.0, 3.0])
+    assert _remains(of, before, after, wrong) < 0.01
+    wrong[1] = 500.0 * problem.noise[1] ** 2
+    assert 0.4 < _remains(of, before, after, wrong) < 0.6
 
 
 def test_names_are_alike_where_one_is_in_the_place_of_the_other_at_odds_below_twenty() -> None:
