@@ -34,7 +34,7 @@ from tests.blind.casefiles import write_case
 from tests.blind.diagnosing import Reply
 from tests.blind.draws import draw
 from tests.blind.fairness import label_of
-from tests.blind.scoring import Score, score
+from tests.blind.scoring import SAME, Score, names_of, score
 from tests.blind.specs import Spec, full_set
 from tests.hil.analysis.missing_effects.turning_mass import base, recording
 
@@ -43,13 +43,6 @@ _CONFIDENCES = (0.0, 0.5, 0.7, 0.9, 0.97, 1.01)
 _TWO_SIDED_95 = 1.96
 #: Counted in the blind set alone: other bases have wrong numbers on purpose, a drive's readings are rounded.
 _ASIDE = ("parameter_mismatch", "sensor_quantization")
-#: Groups of the blind set in which no name of the registry is right.
-_NO_NAME = ("none", "too_small", "outside", "drift")
-#: A number of the base that is an effect by another name: either is right.
-_SAME = {
-    "parameter_mismatch(torque_delay)": "dead_time",
-    "parameter_mismatch(viscous_drag)": "viscous_drag",
-}
 
 
 @dataclass(frozen=True)
@@ -169,8 +162,7 @@ def _cell(case: Case, answer: dict[str, Any], took: float, tally: Tally) -> str:
     tally.given_back.extend(answer.get("given_back", []))
     named = []
     for effect in answer["effects"]:
-        label = _label(effect)
-        alike = _alike(effect)
+        label, *alike = names_of(effect)
         named.append(f"{'~'.join([label, *alike])} {effect['confidence']:.2f}")
         if case.base == "blind" or effect["id"] not in _ASIDE:
             tally.named.append(
@@ -181,16 +173,6 @@ def _cell(case: Case, answer: dict[str, Any], took: float, tally: Tally) -> str:
     text = " + ".join(named) or str(answer["verdict"])
     reached = f", {answer['official']}" if answer.get("official") else ""
     return f"{'right' if right else 'WRONG'} {text}, {left:.2g} % left, {took:.1f} s{reached}"
-
-
-def _label(effect: dict[str, Any]) -> str:
-    label = label_of(effect["id"], effect.get("parameters", {}))
-    return _SAME.get(label, label)
-
-
-def _alike(effect: dict[str, Any]) -> list[str]:
-    """Names that the data cannot tell from an effect's."""
-    return str(effect["class"]).split(" or ")[1:] if "class" in effect else []
 
 
 def _answer(case: Case) -> dict[str, Any]:
@@ -232,7 +214,7 @@ def _exactly(truth: Sequence[str], beside: Sequence[str] = ()) -> Callable[[dict
     """The names alone, numbers, rounding and what may stand beside apart; where there is none, no name."""
 
     def right(answer: dict[str, Any]) -> bool:
-        named = [{_label(e), *_alike(e)} for e in answer["effects"] if e["id"] != "parameter_mismatch"]
+        named = [{*names_of(e)} for e in answer["effects"] if e["id"] != "parameter_mismatch"]
         return _holds([one for one in named if not one & {*beside}], truth)
 
     return right
@@ -315,25 +297,16 @@ def _blind(options: argparse.Namespace) -> Iterator[Case]:
                 [replace(read_recording(path), source=path) for path in paths]
                 for paths in (files.recordings, files.holdout)
             )
-        truth = tuple(_SAME.get(t, t) for t in (label_of(id, values) for id, values in answer.effects))
+        truth = tuple(SAME.get(t, t) for t in (label_of(id, values) for id, values in answer.effects))
 
         def judged(
             found: dict[str, Any], spec: Spec = spec, answer: Any = answer, kind: str = model.kind
         ) -> Score:
-            same = [{**e, **_renamed(e)} for e in found["effects"]]
             failed = str(found["verdict"]) if str(found["verdict"]).startswith("failed") else ""
-            return score(spec, kind, answer, Reply({**found, "effects": same}, failed, 0.0))
+            return score(spec, kind, answer, Reply(found, failed, 0.0))
 
-        def right(
-            found: dict[str, Any],
-            spec: Spec = spec,
-            judged: Callable[[dict[str, Any]], Score] = judged,
-            truth: Sequence[str] = truth,
-        ) -> bool:
-            """As the set asks; a class that holds what is hidden counts where a name is asked for."""
-            named = [{_label(e), *_alike(e)} for e in found["effects"]]
-            asks = spec.group not in _NO_NAME and not spec.subject.startswith("none")
-            return judged(found).right or (asks and _holds(named, truth))
+        def right(found: dict[str, Any], judged: Callable[[dict[str, Any]], Score] = judged) -> bool:
+            return judged(found).right
 
         def off(found: dict[str, Any], judged: Callable[[dict[str, Any]], Score] = judged) -> Sequence[float]:
             return [*judged(found).standard_errors_off.values()]
@@ -348,12 +321,6 @@ def _blind(options: argparse.Namespace) -> Iterator[Case]:
             right,
             off=off,
         )
-
-
-def _renamed(effect: dict[str, Any]) -> dict[str, Any]:
-    """A number of the base that the blind set hides as an effect, under the effect's name."""
-    label = label_of(effect["id"], effect.get("parameters", {}))
-    return {"id": _SAME[label], "parameters": {}} if label in _SAME else {}
 
 
 if __name__ == "__main__":

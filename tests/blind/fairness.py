@@ -62,7 +62,7 @@ def standard_errors_off(
         entry = entries[named.index(label)]
         for name, error in (entry.get("standard_error") or {}).items():
             true = values.get(name)
-            if isinstance(true, str) or true is None or not error:
+            if isinstance(true, str) or true is None or not error or entry["id"] != id:
                 continue
             miss = float(entry["parameters"][name]) - float(true)
             if name == "phase_rad":

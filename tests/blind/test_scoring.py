@@ -38,6 +38,7 @@ def _answer(*effects):
 
 BACKLASH = ("backlash", {"half_gap_rad": 0.01})
 GAIN = ("sensor_gain", {"channel": "shaft_torque_nm", "gain": 1.1})
+LATE = ("parameter_mismatch", {"parameter": "torque_delay", "value": 0.009})
 
 
 @pytest.mark.parametrize(
@@ -52,6 +53,8 @@ GAIN = ("sensor_gain", {"channel": "shaft_torque_nm", "gain": 1.1})
             _reply("named", ("sensor_gain", {"channel": "motor_speed_rad_s", "gain": 1.1}, 0.9)),
             False,
         ),
+        ("single", [("dead_time", {"extra_delay_s": 0.004})], _reply("named", (*LATE, 0.9)), True),
+        ("mismatch", [LATE], _reply("named", (*LATE, 0.9)), True),
         ("pair", [BACKLASH, GAIN], _reply("named", (*GAIN, 0.9), (*BACKLASH, 0.9)), True),
         ("pair", [BACKLASH, GAIN], _reply("named", (*GAIN, 0.9)), False),
         ("none", [], _reply("none"), True),
@@ -65,6 +68,15 @@ GAIN = ("sensor_gain", {"channel": "shaft_torque_nm", "gain": 1.1})
 def test_what_is_right(group, hidden, reply, right):
     result = score(Spec(group, "any", "clear", 0), "two_inertia", _answer(*hidden), reply)
     assert result.right is right
+
+
+def test_a_class_stands_for_each_of_its_names():
+    reply = _reply("named", ("actuator_lag", {"time_constant_s": 0.01}, 0.9))
+    reply.diagnosis["effects"][0]["class"] = "actuator_lag or sensor_gain(shaft_torque_nm)"
+    spec = Spec("single", "sensor_gain", "clear", 0)
+    found = score(spec, "two_inertia", _answer(GAIN), reply)
+    assert (found.right, found.named, found.parameter_errors) == (True, ["sensor_gain(shaft_torque_nm)"], {})
+    assert not score(spec, "two_inertia", _answer(BACKLASH), reply).right
 
 
 def test_gaps_count_in_units_of_the_true_noise():
