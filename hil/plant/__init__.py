@@ -16,8 +16,16 @@ from hil.plant._linear import LinearSystem, linear_system, linear_system_of, sys
 from hil.plant._motor_limits import refuse_motor_limits
 from hil.plant._packed_sets import begins_of, turns
 from hil.plant._regulated import Turning, followed, given_outputs, stands, turning_of
-from hil.plant._replay import Start, gear_ratio_of, load_of, replay, replayed, simulate
+from hil.plant._replay import (
+    Start,
+    gear_ratio_of,
+    load_of,
+    replay,
+    replayed,
+    simulate,
+)
 from hil.plant._stability import LONGEST_STEP_S, is_stable, refuse_diverged_state, refuse_too_stiff
+from hil.plant._stamps import at_true_times, even_times, held_over, jittered
 from hil.plant.sensors import DELAY as SENSOR_DELAY
 from hil.plant.sensors import GAIN as SENSOR_GAIN
 from hil.plant.sensors import OFFSET as SENSOR_OFFSET
@@ -41,17 +49,21 @@ __all__ = [
     "angle_at",
     "angle_of",
     "as_read",
+    "at_true_times",
     "begins_of",
     "bench_sensor",
     "by_angle",
     "chain_numbers",
+    "even_times",
     "followed",
     "gear_ratio_of",
     "given_outputs",
     "half_window",
+    "held_over",
     "ideal_sensors",
     "is_regulated",
     "is_stable",
+    "jittered",
     "linear_system",
     "linear_system_of",
     "load_of",

@@ -19,12 +19,12 @@ from hil.plant._batch_simulation import simulate_many
 from hil.plant._functions import respond_many
 from hil.plant._regulated import turning_load
 from hil.plant._stability import LONGEST_STEP_S, refuse_divergence, refuse_too_stiff
+from hil.plant._stamps import UNEVEN_SHARE, at_true_times, even_times, held_over, jittered
 from hil.plant.sensors import GAIN, OFFSET, STEP, measured, sensor_of
 from hil.plant.sides import LUMPED, form_of
 
 Array = npt.NDArray[np.float64]
 
-_UNEVEN_SHARE = 0.01
 _RESTING_SHARE = 0.05
 _LATE = {"dead_time": ("extra_delay_s",), "actuator_lag": ("time_constant_s",)}
 _SLOW_HZ = 1e-3
@@ -119,23 +119,24 @@ def replay(model: Model, recording: Recording) -> Recording:
     It begins at what the first samples show, within their noise where the next seconds suit best. Ripples
     follow the angle that recorded speeds turn through. Where the model has a `load_input`, that channel
     brakes its wheels, or they turn as it says. Where an angle was recorded in place of a speed, both are
-    given, the angle from its first reading on. Uneven time stamps are resampled (input held, load and
+    given, the angle from its first reading on. Uneven time stamps are resampled (input by means, load and
     outputs interpolated); `notes` says so.
 
     Raises:
         BadInputError: the simulation diverges, or would; or the model's load was not recorded.
     """
     refuse_too_stiff(model)
+    stamps, recording = recording.time_s, at_true_times(recording)
     time = recording.time_s
-    dt = recording.sample_time_s
+    dt = float(np.median(np.diff(time)))
     torque = recording[INPUT]
     load = load_of(model, recording)
-    notes = []
-    even = np.max(np.abs(np.diff(time) - dt)) <= _UNEVEN_SHARE * dt
+    notes = [jittered(dt)] if time is not stamps else []
+    even = np.max(np.abs(np.diff(time) - dt)) <= UNEVEN_SHARE * dt
     grid = time
     if not even:
-        grid = time[0] + dt * np.arange(int(np.ceil((time[-1] - time[0]) / dt)) + 1)
-        torque = torque[np.clip(np.searchsorted(time, grid + 1e-9 * dt, side="right") - 1, 0, len(time) - 1)]
+        grid, dt = even_times(time)
+        torque = held_over(grid, dt, time, torque)
         load = None if load is None else np.interp(grid, time, load)
         notes.append(f"time stamps are uneven: simulated every {dt * 1e3:g} ms, interpolated back")
     else:
@@ -150,7 +151,7 @@ def replay(model: Model, recording: Recording) -> Recording:
     if not even:
         channels = {name: np.interp(time, grid, values) for name, values in channels.items()}
     inputs = {name: recording[name] for name in (INPUT, model.load_input) if name in recording}
-    return Recording({TIME: time, **inputs, **channels}, recording.source, notes=notes)
+    return Recording({TIME: stamps, **inputs, **channels}, recording.source, notes=notes)
 
 
 def _along(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -93,6 +93,7 @@ class _Shown:
     problem: Problem
     unseen: Problem
     done: Candidates
+    known: dict[int, tuple[Candidate, Array]] = field(default_factory=dict)
 
     def point(self, problem: Problem, hypothesis: Hypothesis) -> Point:
         """A hypothesis on recordings of a problem, with the starts that suit them best."""
@@ -106,7 +107,11 @@ class _Shown:
 
         Recordings held out count along; alone, they would judge effects that they do not excite.
         """
-        hypothesis = candidate.point.hypothesis
+        if id(candidate) not in self.known:
+            self.known[id(candidate)] = candidate, self._left(candidate.point.hypothesis)
+        return self.known[id(candidate)][1]
+
+    def _left(self, hypothesis: Hypothesis) -> Array:
         both = (self.problem,) if self.unseen is self.problem else (self.problem, self.unseen)
         whole = replace(self.problem, series=tuple(s for one in both for s in one.series))
         return whole.mean_square([e for one in both for e in self.point(one, hypothesis).errors])

@@ -34,20 +34,25 @@ _TIMES_S = np.geomspace(0.01, 100.0, 81)  # in which a drag would stop its inert
 def constancy(problem: Problem, at: Linearised, index: int, cost: float) -> float:
     """Least size of an effect in a recording as a share of what it is in the mean, 0 to 1.
 
+    Of several numbers those count that do as much: air at a walking pace says nothing of rolling.
+
     Args:
         index: of the effect.
         cost: growth of log L that one more number must bring.
     """
     effect = EFFECTS[at.point.hypothesis.terms[index].id]
-    least = 1.0
+    sizes, does = np.zeros((2, len(at.coordinates)))
     for place, one in enumerate(at.coordinates):
         size = abs(one.at(0.0) - effect.off)
-        if one.term != index or one.name not in effect.acting() or not 0.0 < size < math.inf:
-            continue
+        if one.term == index and one.name in effect.acting() and size < math.inf:
+            sizes[place] = size / abs(one.slope(0.0))
+            does[place] = sizes[place] * np.linalg.norm(at.slopes[:, place])
+    least = 1.0
+    for place in np.flatnonzero((does > HALF * np.max(does, initial=0.0)) & (does > 0.0)).tolist():
         gain, moved = _change(problem, at, place)
         if gain > cost:
-            least = min(least, 1.0 - 0.5 * abs(moved * one.slope(0.0)) / size)
-    return max(least, 0.0)
+            least = min(least, 1.0 - 0.5 * abs(moved) / sizes[place])
+    return float(max(least, 0.0))
 
 
 def _change(problem: Problem, at: Linearised, place: int) -> tuple[float, float]:

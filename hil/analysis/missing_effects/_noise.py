@@ -21,7 +21,7 @@ _TOP = 0.6  # of the band up to half the rate: above it stands no mode of a driv
 _TOP_SLOPE = float(2.0 * np.sin(0.25 * np.pi * (1.0 + _TOP)))  # of differences of white noise, over it, there
 _LATE_S, _MOST_LAGS = 0.03, 60  # at most is a torque that leaps along; samples
 _SOME = 40_000  # samples
-_WINDOW = 1024  # samples
+_WINDOW, _WINDOWS = 1024, 12  # samples at most; windows at least, as the median of few densities is too low
 _BINS = 4096  # of a spectrum of noise
 _LEAST_COLOUR = 1e-4  # no encoder's noise is that much less in one octave than in all
 _DIGITS = 1e-5  # of a channel's rms: what no instrument of a bench resolves
@@ -136,5 +136,6 @@ def _white_of_blocks(one: Series, column: int) -> float:
 
 def white_level(values: Array) -> float:
     """Standard deviation of a sample, by the median density above `_TOP` of the band (lines left out)."""
-    frequency, density = power_density(values[:, None], 1.0, min(_WINDOW, len(values)), average="median")
+    length = min(_WINDOW, max(len(values) // _WINDOWS, 2))
+    frequency, density = power_density(values[:, None], 1.0, length, average="median")
     return float(np.sqrt(0.5 * np.median(density[frequency > 0.5 * _TOP, 0])))

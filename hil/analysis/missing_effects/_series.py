@@ -29,10 +29,14 @@ from hil.plant import (
     TURNED_OVER_S,
     Turning,
     angle_at,
+    at_true_times,
     by_angle,
+    even_times,
     given_outputs,
     half_window,
+    held_over,
     is_regulated,
+    jittered,
     load_of,
     speed_of,
     stands,
@@ -238,19 +242,18 @@ def _notes(recording: Recording, even: bool, dt: float) -> list[str]:
 
 def _series(model: Model, recording: Recording) -> Series:
     _refuse_too_little(recording)
+    stamps, recording = recording.time_s, at_true_times(recording)
     time = recording.time_s
-    count = round(float(time[-1] - time[0]) / recording.sample_time_s)
-    dt = float(time[-1] - time[0]) / count
-    grid = time[0] + dt * np.arange(count + 1)
+    grid, dt = even_times(time)
     nearest = np.clip(np.searchsorted(time, grid - 0.5 * dt), 0, len(time) - 1)
     even = bool(np.max(np.abs(time[nearest] - grid)) <= _EVEN_SHARE * dt)
-    held = np.clip(np.searchsorted(time, grid + 1e-9 * dt, side="right") - 1, 0, len(time) - 1)
 
     def on_grid(values: Array) -> Array:
         return np.asarray(values[nearest] if even else np.interp(grid, time, values), dtype=float)
 
     samples, angle = np.full((2, len(grid), len(OUTPUTS)), np.nan)
     of_angle, notes = by_angle(recording), [*recording.notes, *_notes(recording, even, dt)]
+    notes += [jittered(dt)] if time is not stamps else []
     for column, name in enumerate(OUTPUTS):
         if of_angle[column]:
             angle[:, column] = angle_at(recording, ANGLES[name], grid)
@@ -261,10 +264,12 @@ def _series(model: Model, recording: Recording) -> Series:
     block = max(1, round(1.0 / (FIT_RATE_HZ * dt)))
     if not even:  # a block without a reading of its own would show what was interpolated
         block = max(block, math.ceil(float(np.quantile(np.diff(time), _USUAL)) / dt))
+    torque = recording[INPUT][nearest] if even else held_over(grid, dt, time, recording[INPUT])
+    torque = np.ascontiguousarray(torque, dtype=float)
     load, given = load_of(model, recording), given_outputs(model)
     return Series(
         recording.source.stem,
-        np.ascontiguousarray(recording[INPUT][nearest if even else held], dtype=float),
+        torque,
         dt,
         block,
         samples,

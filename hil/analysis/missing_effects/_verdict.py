@@ -159,8 +159,10 @@ def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, Linearised, 
         if not best.names:
             return best, at, []
         fewer = [_without(of.done, best, index) for index in range(len(best.names))]
-        wrong = _wrong_by_laws(of, best, fewer)
-        shares = [_share(of, one, best, at, index, wrong) for index, one in enumerate(fewer)]
+        shares = [
+            _share(of, one, best, at, index, _wrong_by_laws(of, best, fewer, index))
+            for index, one in enumerate(fewer)
+        ]
         least = int(np.argmin(shares))
         if shares[least] >= HALF:
             return best, at, shares
@@ -177,11 +179,19 @@ def _share(
     return (1.0 - _remains(of, fewer, best, wrong)) * lasts
 
 
-def _wrong_by_laws(of: Judged, best: Candidate, fewer: Sequence[Candidate]) -> Array:
-    """Variance that may stay in each channel, (3,), as no law is right to the last digit; linear ones are."""
-    left = of.left(best)
-    bent = [one for use, one in zip(best.point.hypothesis.terms, fewer, strict=True) if not _is_linear(use)]
-    return np.asarray(_LAW**2 * sum((np.maximum(of.left(one) - left, 0.0) for one in bent), np.zeros(3)))
+def _wrong_by_laws(of: Judged, best: Candidate, fewer: Sequence[Candidate], index: int) -> Array:
+    """Variance in each channel, (3,), that others' laws may get wrong without an effect; not linear ones.
+
+    A law that is wrong by a share leaves that of what it takes off in every channel, so no more than where
+    least stays.
+    """
+    left, alone = of.left(best), of.left(fewer[index])
+    wrong = np.zeros(3)
+    for other, use in enumerate(best.point.hypothesis.terms):
+        if other != index and not _is_linear(use):
+            taken = np.maximum(of.left(fewer[other]) - left, 1e-300)
+            wrong += min(_LAW**2, float(np.nanmin(alone / taken))) * taken
+    return wrong
 
 
 def _is_linear(use: EffectUse) -> bool:
@@ -339,10 +349,15 @@ def _alike(
 ) -> dict[str, tuple[str, ...]]:
     """Of each name of the best hypothesis: the names that could take its place without the data telling.
 
-    They tell two names apart where one is in the place of the other at odds of 20 : 1.
+    They tell two names apart where one is in the place of the other at odds of 20 : 1. Of more names than are
+    given each would stand in the place of another that it goes with; nor does one that stands beside them in
+    the likeliest hypothesis, and was dropped.
     """
     problem = done.weighed_as(best, once=True)
-    others = sorted({name for one in candidates for name in one.names} - {*best.names})
+    weights = weights * np.array([len(one.names) <= len(best.names) for one in candidates])
+    beside = {*max(candidates, key=done.score).names}
+    beside = beside if {*best.names} <= beside else {*best.names}
+    others = sorted({name for one in candidates for name in one.names} - beside)
     found: dict[str, tuple[str, ...]] = {}
     for name in best.names:
         least = np.exp(-ALIKE) * _held(name, candidates, weights)

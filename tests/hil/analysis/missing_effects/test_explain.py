@@ -85,6 +85,17 @@ def test_a_recording_without_outputs_is_refused() -> None:
         series_of(base(0.54), [Recording(channels, whole.source)])
 
 
+def test_nothing_is_missing_where_stamps_jitter() -> None:
+    """The readings keep the clock, as of a device that is logged when its messages come in."""
+    whole, model = chirp(0.005), Model("two_inertia", NUMBERS)
+    time = whole["time_s"] + np.random.default_rng(3).uniform(-2e-4, 2e-4, whole.samples)
+    kept = np.random.default_rng(4).random(whole.samples) > 0.005
+    stamped = {name: values[kept] for name, values in (whole.channels | {"time_s": time}).items()}
+    found = explain_gap(model, series_of(model, [Recording(stamped, whole.source)]))
+    assert (found.verdict, found.effects) == ("none", ())
+    assert found.numbers["torque_delay"][1] == pytest.approx(NUMBERS["torque_delay"], abs=3e-5)
+
+
 def test_a_right_base_with_rounded_readings_has_rounding_alone() -> None:
     fit = recording(0.54, 2.17, noise_rad_s=0.002)
     fit.channels["motor_speed_rad_s"] = np.round(fit["motor_speed_rad_s"] / 0.05) * 0.05

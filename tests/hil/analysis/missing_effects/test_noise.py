@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.missing_effects._noise import colour_of, proven_noise
+from hil.analysis.missing_effects._noise import colour_of, proven_noise, white_level
 from hil.analysis.missing_effects._series import series_of
 from hil.analysis.missing_effects._spectrum import powers_of
 from hil.core.channels import INPUT, MOTOR_ANGLE, TIME
@@ -23,6 +23,12 @@ def test_white_noise_is_read_from_the_top_of_the_spectrum() -> None:
     level = proven_noise(series, {})
     assert level[0] == pytest.approx(0.05 / 2.0, rel=0.1)  # means of four samples
     assert np.isnan(level[1:]).all()
+
+
+@pytest.mark.parametrize("count", [300, 1_000, 2_000, 20_000])
+def test_white_noise_of_a_short_recording_is_no_smaller(count: int) -> None:
+    levels = [white_level(np.random.default_rng(seed).normal(0.0, 0.3, count)) for seed in range(40)]
+    assert np.mean(levels) == pytest.approx(0.3, rel=0.05)
 
 
 def test_stated_noise_counts_where_it_is_larger() -> None:

@@ -73,7 +73,8 @@ def test_jittered_stamps_are_put_on_an_even_grid_and_noted() -> None:
     jitter = np.random.default_rng(2).uniform(-2e-4, 2e-4, 4000)
     (one,) = series_of(_MASS, [_recorded(**{TIME: recording[TIME] + jitter})])
     assert one.dt == pytest.approx(1e-3, rel=1e-3)
-    assert one.notes[0].startswith("time stamps are uneven: put on a grid of 1")
+    assert one.even
+    assert one.notes[0].startswith("time stamps jitter and readings keep a clock: taken to be 1 ms")
     assert one.source == "one.csv"
 
 
