@@ -39,6 +39,7 @@ export function App(): JSX.Element {
     refusal.value = null;
     dismiss(); // it was of the view before
   }, [place]);
+  useEffect(() => { if (who.state === "out") dismiss(); }, [who.state]); // nobody is there who could answer
   if (place.view === "wall" && who.state === "in") return <main id="main"><View place={place} /></main>;
   return (
     <>

@@ -7,6 +7,7 @@ import type { Health } from "../api/types.ts";
 import { attempt, useData } from "../data.ts";
 import { t } from "../i18n/text.ts";
 import { lookWho, session } from "../session.ts";
+import { useStore } from "../store.ts";
 
 // Why the provider's way back signed nobody in, as `?sign_in=` says it.
 const REASONS: Record<string, () => string> = {
@@ -20,10 +21,12 @@ const REASONS: Record<string, () => string> = {
 export function SignIn(): JSX.Element {
   const health = useData<Health>("/health");
   const [reason] = useState(takeReason);
+  const who = useStore(session), ended = who.state === "out" && who.ended;
   const provider = health.data?.sign_in ?? "";
   return (
     <div class="card narrow">
       <h1>{t("Sign in")}</h1>
+      {ended ? <p class="alarm" role="alert">{t("You are no longer signed in: the session has ended, or the token was revoked. Sign in again.")}</p> : null}
       {reason ? <p class="alarm" role="alert">{reason}</p> : null}
       {provider ? <p><a class="button main" href={wayIn()}>{t("Sign in with {provider}", { provider })}</a></p> : null}
       {provider ? <details><summary>{t("Sign in with a token")}</summary><TokenForm /></details> : health.loading ? null : <TokenForm first />}
