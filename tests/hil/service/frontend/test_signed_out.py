@@ -1,4 +1,4 @@
-"""A page whose token is revoked, or that is signed out in another tab, shows no more and offers to sign in."""
+"""A page whose token is revoked, or that is signed out in another tab, offers to sign in."""
 
 from __future__ import annotations
 

@@ -102,7 +102,7 @@ export function resetText(next: Run | null | undefined): string {
 }
 
 const FRESH_MS = 5000; // a look at the speed says something of now
-const RECENT_MS = 8000; // the newest of looks that go on: while an axle turns there is one every five or six seconds
+const RECENT_MS = 10_000; // the newest of looks that go on: while an axle turns there is one every five or six seconds
 
 const isWithin = (bench: Bench, nowMs: number, ms: number): boolean => bench.last_speed != null && nowMs - Date.parse(bench.last_speed.at) <= ms;
 
@@ -111,6 +111,9 @@ export const isFreshStandstill = (bench: Bench, nowMs: number): boolean => isWit
 
 // Whether the service's looks at the speed go on, so that what a window shows of it is of now.
 export const isRecentLook = (bench: Bench, nowMs: number): boolean => isWithin(bench, nowMs, RECENT_MS);
+
+// Whether the service has just seen that the motor turns: it resets no stop then.
+export const isSeenTurning = (bench: Bench, nowMs: number): boolean => isRecentLook(bench, nowMs) && bench.last_speed?.turns === true;
 
 // What happens from a stop to the end of its run: until then nobody can reset it, and somebody must afterwards.
 export const stoppingText = (): string =>
