@@ -5,7 +5,7 @@ import test from "node:test";
 import type { Bench, Run } from "../../../../hil/service/frontend/src/api/types.ts";
 import type { BenchState } from "../../../../hil/service/frontend/src/live.ts";
 import { soundOf } from "../../../../hil/service/frontend/src/ui/sound.ts";
-import { aboutBench, headlineOf, isFreshStandstill, isRecentLook, isSeenTurning, lastSpeedText, leftOf, messageOf, nextOf, wallWordOf, wordOf } from "../../../../hil/service/frontend/src/views/bench-words.ts";
+import { aboutBench, asOf, headlineOf, isFreshStandstill, isRecentLook, isSeenTurning, lastSpeedText, leftOf, messageOf, nextOf, wallWordOf, wordOf } from "../../../../hil/service/frontend/src/views/bench-words.ts";
 
 const RUN = { id: 7, plan: "steps", title: "Steps", requested_by: "anna", doing: "tip_in", share: 0.25, state: "running", started_at: "2026-11-28T10:00:00Z" } as Run;
 const QUESTION = { text: "Is the cage shut?", answer_by: "2026-11-28T10:10:00Z", picture: "" };
@@ -22,6 +22,7 @@ test("a bench is said in one word", () => {
 test("a paused run is headed so, and its message has no keys of a terminal", () => {
   const held = { ...RUN, doing: "held: oil" }, { bench } = stateOf("running", held), message = "held: oil\nlet it cool\nr and Enter: resume; q and Enter: end the run";
   assert.deepEqual([headlineOf(bench, "Steps", false, true), headlineOf(bench, "Steps")], ["Paused: Steps", "Running: Steps"]);
+  assert.deepEqual([headlineOf(bench, "Steps", false, true, true), asOf(true, "Free"), asOf(false, "Free")], ["Question: Steps", "Last known: Free", "Free"]);
   assert.equal(messageOf({ running: held, message }), "held: oil\nlet it cool");
   assert.equal(messageOf({ running: RUN, message }), "");
 });

@@ -69,3 +69,13 @@ def test_what_is_pressed_after_the_end_leads_to_the_sign_in(page: playwright.Pag
     page.get_by_role("link", name="Plans", exact=True).click()
     expect(heading(page, "Sign in")).to_be_visible()
     expect(page.get_by_text("Authorization: Bearer")).to_have_count(0)
+
+
+@pytest.mark.parametrize("refusals", [("401 (Unauthorized)", "422 (Unprocessable")])
+def test_what_cannot_be_a_token_is_refused_as_a_token(page: playwright.Page, there: Served) -> None:
+    to(page, there, "benches/sim")
+    page.get_by_label("Token").fill("no token ä")
+    page.get_by_role("button", name="Sign in").click()
+    alert = page.get_by_role("alert")
+    expect(alert).to_contain_text("this token is not known, has expired or was revoked")
+    expect(alert).not_to_contain_text("secret")

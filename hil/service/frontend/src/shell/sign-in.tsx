@@ -2,7 +2,7 @@
 
 import type { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
-import { API, ask } from "../api/client.ts";
+import { API, ask, Refused } from "../api/client.ts";
 import type { Health } from "../api/types.ts";
 import { attempt, useData } from "../data.ts";
 import { t } from "../i18n/text.ts";
@@ -40,7 +40,7 @@ function TokenForm({ first = false }: { first?: boolean }): JSX.Element {
   useEffect(() => { if (first) secret.current?.focus(); }, []);
   const submit = async (event: Event) => {
     event.preventDefault();
-    const opened = await attempt(async () => { await ask("POST", "/session", { secret: secret.current?.value ?? "" }); return true; });
+    const opened = await attempt(async () => { await signIn(secret.current?.value ?? ""); return true; });
     if (opened) await lookWho();
   };
   return (
@@ -50,6 +50,16 @@ function TokenForm({ first = false }: { first?: boolean }): JSX.Element {
       <p class="quiet">{t("An administrator makes tokens.")}</p>
     </form>
   );
+}
+
+// What has other characters than a token is none: how the API's field is called says nothing to a person.
+async function signIn(secret: string): Promise<void> {
+  try {
+    await ask("POST", "/session", { secret });
+  } catch (error) {
+    if (!(error instanceof Refused) || error.status !== 422) throw error;
+    throw new Refused(401, { what: "this token is not known, has expired or was revoked", where: "", fix: "enter it as it was made, without anything around it, or ask an administrator for a new one" });
+  }
 }
 
 // To the provider, and from there back to the view that was asked for.

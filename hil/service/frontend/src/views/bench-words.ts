@@ -31,15 +31,19 @@ export function reservedText(bench: Bench): string {
 // The colours of a bench: its state, or that it waits for a person.
 export const lookOf = (bench: Bench, run: Run | null): string => (run?.prompt || isReserved(bench) ? "in_use" : bench.state);
 
-// `ending`: its run is being ended; `held`: it waits for a cause to be gone or for Resume.
-export function headlineOf(bench: Bench, title: string | null, ending = false, held = false): string {
+// `ending`: its run is being ended; `held`: it waits for a cause to be gone or for Resume; `asks`: it waits for an answer.
+export function headlineOf(bench: Bench, title: string | null, ending = false, held = false, asks = false): string {
   if (bench.stop_confirmed === false) return t("Emergency stop asked for, NOT CONFIRMED");
   if (title !== null && bench.state === "running") {
     if (ending) return t("Being ended: {plan}", { plan: title });
+    if (asks) return t("Question: {plan}", { plan: title });
     return held ? t("Paused: {plan}", { plan: title }) : t("Running: {plan}", { plan: title });
   }
   return isReserved(bench) ? reservedText(bench) : STATES[bench.state];
 }
+
+// What a bench did when the service was last heard of: of now nothing is known.
+export const asOf = (isLost: boolean, words: string): string => (isLost ? t("Last known: {state}", { state: words }) : words);
 
 // To be read from afar.
 export function wordOf(bench: Bench, run: Run | null): string {
