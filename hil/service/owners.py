@@ -31,6 +31,10 @@ class OwnersKnown:
         over = found is not None and found.until_s is not None and found.until_s < time.time()
         return None if over else found
 
+    def any(self) -> bool:
+        """Whether there is a token or session that is not revoked."""
+        return bool(self._known)
+
     def changed(self) -> None:
         """Ask the database now."""
         self._changed.set()

@@ -144,14 +144,23 @@ class Operator:
             return "no operator: a simulated bench continues"
         self.look()  # a line that was typed before is no answer
         self._answer = None
-        how = "Press Enter to continue, q and Enter to end the run."
+        how = "Press Enter to continue, q and Enter to end the run. Other text is a remark: the run goes on."
         question = Question(text=text, answer_within_s=timeout_s, picture=picture)
         self._terminal.tell(f"{text}\n{how}", question)
-        if not self.wait_for(lambda: self._answer is not None, timeout_s):
+        if not self._is_answered(text, timeout_s):
             what = f"no answer to '{text}' within {timeout_s:g} s"
             raise InterruptError(what, where="operator prompt")
         self.take_pause()  # at a prompt the run is held already
-        return f"confirmed by the operator: {self._answer}" if self._answer else "confirmed by the operator"
+        remark = f"; remark: {self._answer}" if self._answer else ""
+        return f"confirmed by the operator{remark}"
+
+    def _is_answered(self, text: str, timeout_s: float) -> bool:
+        try:
+            return self.wait_for(lambda: self._answer is not None, timeout_s)
+        except InterruptError as error:
+            if self._loop.stop_reason == GONE_REASON:
+                raise
+            raise InterruptError(f"stopped by the operator, who did not continue at '{text}'") from error
 
     def _stand_still(self) -> None:
         time.sleep(LOOK_S)

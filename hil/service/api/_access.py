@@ -54,6 +54,33 @@ def who(
     return Me(name=owner.name, role=owner.role, tokens=True)
 
 
+def _still(
+    service: TheService,
+    header: Annotated[HTTPAuthorizationCredentials | None, Depends(_bearer)],
+    cookie: Annotated[str | None, Depends(_cookie)],
+    me: Annotated[Me, Depends(who)],
+) -> Callable[[], bool]:
+    """Whether who asked may still look: what is sent for long must end with the token or session.
+
+    Mostly from memory, for it is asked many times a second. One that is not known there may be newer than
+    what is: then the database decides, and one that is away ends nothing.
+    """
+    secret = header.credentials if header is not None else cookie or ""
+
+    def check() -> bool:
+        if service.owners.of(secret) is not None or (not me.tokens and not service.owners.any()):
+            return True
+        try:
+            who(service, header, cookie)
+        except RefusedError:
+            return False
+        except DatabaseAwayError:
+            return True
+        return True
+
+    return check
+
+
 def _needs(role: Role) -> Callable[[Me], Me]:
     def check(me: Annotated[Me, Depends(who)]) -> Me:
         if me.role not in LADDER or LADDER.index(me.role) < LADDER.index(role):
@@ -93,6 +120,7 @@ def _agent(
     return me
 
 
+Still = Annotated[Callable[[], bool], Depends(_still)]
 AgentItself = Annotated[Me, Depends(_agent)]
 Viewer = Annotated[Me, Depends(_needs("viewer"))]
 Operator = Annotated[Me, Depends(_needs("operator"))]

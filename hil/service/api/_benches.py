@@ -77,6 +77,7 @@ async def reset_bench(bench: BenchName, service: TheService, me: Engineer) -> Be
     known(service, bench)
     if service.running(bench) is not None:
         raise RefusedError(409, "a run is still being ended", where=bench, fix="wait for its end")
+    _refuse_turning(service, bench)
     count = await service.reset(bench, me.name)
     if count is None:
         raise RefusedError(
@@ -86,6 +87,23 @@ async def reset_bench(bench: BenchName, service: TheService, me: Engineer) -> Be
     service.wake(bench)
     service.changed(bench)
     return service.bench_data(bench)
+
+
+def _refuse_turning(service: Service, bench: str) -> None:
+    """Nobody confirms that an axle stands which was just seen to turn.
+
+    Raises:
+        RefusedError: it was.
+    """
+    seen = service.live_hub.seen_turning(bench)
+    if seen is not None:
+        speed = f"{abs(seen.speed_rad_s):.1f} rad/s"
+        raise RefusedError(
+            409,
+            f"the axle turns: at the last look the motor had {speed}",
+            where=bench,
+            fix="wait until it stands, or brake it; then reset",
+        )
 
 
 @router.put("/benches/{bench}/lease", name="take_lease")

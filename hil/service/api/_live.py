@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import time
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Callable, Sequence
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
@@ -14,7 +14,7 @@ from fastapi.responses import StreamingResponse
 from hil.api_schemas.api import BenchName
 from hil.api_schemas.comparison import ChannelName
 from hil.core.result import CriterionResult
-from hil.service.api._access import TheService, Viewer
+from hil.service.api._access import Still, TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError
 from hil.service.live.live import BUCKET_S, MOST_BUCKETS, Spectrum, Stretch
@@ -36,7 +36,7 @@ CHANNELS = (
 )
 _MOST_VIEWERS = 200
 _SHORTEST_S = 0.04  # 20 updates a second, which need not be even to a millisecond
-_LONGEST_S = 10.0  # without anything to say
+_LONGEST_S = 2.0  # without anything to say; a viewer who may look no longer is noticed as soon
 _SPECTRUM_EVERY_S = 0.5
 _SHOWN_S = 30.0  # of a run that was under way before the viewer came
 
@@ -51,6 +51,7 @@ async def live(
     bench: BenchName,
     service: TheService,
     me: Viewer,
+    still: Still,
     channel: Annotated[list[ChannelName] | None, Query(max_length=24)] = None,
 ) -> StreamingResponse:
     """A bench as it changes: `state`, `samples`, `spectrum`, `criteria`, `marks` (docs/reference/api.md)."""
@@ -58,16 +59,19 @@ async def live(
     if len(service.live_hub.viewers[bench]) >= _MOST_VIEWERS:
         raise RefusedError(429, f"the limit of {_MOST_VIEWERS} viewers is reached")
     return StreamingResponse(
-        _Watching(service, bench, me.name, channel or CHANNELS).events(), media_type="text/event-stream"
+        _Watching(service, bench, me.name, still, channel or CHANNELS).events(),
+        media_type="text/event-stream",
     )
 
 
 class _Watching:
     """One viewer of one bench."""
 
-    def __init__(self, service: Service, bench: str, name: str, channels: Sequence[str]) -> None:
+    def __init__(
+        self, service: Service, bench: str, name: str, still: Callable[[], bool], channels: Sequence[str]
+    ) -> None:
         self._service, self._bench, self._cache = service, bench, service.live_hub.caches[bench]
-        self._name = name
+        self._name, self._still = name, still
         self._channels = tuple(dict.fromkeys(channels))
         self._marks: object = None
         self._run = -1
@@ -84,6 +88,9 @@ class _Watching:
         try:
             while not self._service.closing:
                 woken.clear()
+                if not await in_turns(self._may_look()):
+                    yield _event("signed_out", {})
+                    return
                 news = "".join(await in_turns(self._news()))
                 yield news or _event("here", {})
                 await asyncio.sleep(_SHORTEST_S)
@@ -94,6 +101,9 @@ class _Watching:
         finally:
             viewers.pop(woken, None)
             self._service.changed(self._bench)
+
+    async def _may_look(self) -> bool:
+        return self._still()
 
     async def _news(self) -> list[str]:
         service, bench, hub = self._service, self._bench, self._service.live_hub

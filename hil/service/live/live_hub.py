@@ -51,6 +51,7 @@ class BroadcastCache:
             return self._state
 
 
+_SEEN_S = 10.0  # while an axle turns it is looked at every five or six seconds
 _LOOK_S = 0.05  # a viewer is sent as many updates
 _JUDGE_S = 1.0
 
@@ -112,6 +113,11 @@ class LiveHub:
         """
         known = filter(None, (self._heard.get(bench), self.measured_speed(bench)))
         return max(known, key=lambda one: one.at, default=None)
+
+    def seen_turning(self, bench: str) -> LastSpeed | None:
+        """The motor's speed where it was just seen to turn; None if it stands, or nothing says so of now."""
+        last, moment = self.last_speed(bench), datetime.datetime.now(datetime.UTC)
+        return last if last and last.turns and (moment - last.at).total_seconds() <= _SEEN_S else None
 
     def why_no_speed(self, bench: str) -> str:
         """Why the speed of a bench could not be heard; '' if it was, or if no one has listened."""

@@ -90,7 +90,9 @@ def test_a_prompt_is_answered_and_what_is_typed_is_kept(tmp_path: Path) -> None:
     code, result = operator.ended()
     assert (code, result["safe_state"]) == (0, "confirmed")
     events = read_recording(tmp_path / "out" / "recording.mcap").events
-    assert "confirmed by the operator: yes, by A. Tester" in [e.text for e in events if e.kind == "prompt"]
+    assert "confirmed by the operator; remark: yes, by A. Tester" in [
+        e.text for e in events if e.kind == "prompt"
+    ]
 
 
 @pytest.mark.slow

@@ -11,10 +11,12 @@ from typing import Any
 
 import pytest
 
-from hil.api_schemas.api import LastSpeed
+from hil.api_schemas.api import LastSpeed, Me
 from hil.app.worker.motor_speed import MOTOR_SPEED
 from hil.execution.motor_speed import Heard
 from hil.service import heard_speeds
+from hil.service.api._benches import reset_bench
+from hil.service.api._problems import RefusedError
 from hil.service.live.live_hub import LiveHub, last_speed
 from hil.service.queue import Queue
 from tests.hil.cli.test_sim_bench import serving
@@ -115,3 +117,39 @@ def test_a_motor_that_a_run_saw_stand_is_not_listened_to(
     assert last is not None
     assert last.speed_rad_s == 0.1
     assert heard == [99.0]
+
+
+@pytest.mark.parametrize(
+    ("speed_rad_s", "ago_s", "refused"),
+    [(42.1, 0.0, True), (-280.0, 6.0, True), (42.1, 60.0, False), (0.1, 0.0, False)],
+)
+def test_a_stop_is_not_reset_while_the_axle_is_seen_to_turn(
+    tmp_path: Path, speed_rad_s: float, ago_s: float, refused: bool
+) -> None:
+    """What was seen a while ago says little of now: then a person has to look."""
+    hub = _Hub(tmp_path, 0.1)
+    at = datetime.datetime.now(datetime.UTC) - datetime.timedelta(seconds=ago_s)
+    hub._last = last_speed(speed_rad_s, at)
+    reset = []
+
+    async def resetting(bench: str, by: str) -> int:
+        reset.append(bench)
+        return 1
+
+    service: Any = SimpleNamespace(
+        benches=["axle"],
+        live_hub=hub,
+        running=lambda name: None,
+        reset=resetting,
+        log=SimpleNamespace(add=lambda *row: None),
+        wake=lambda name: None,
+        changed=lambda name: None,
+        bench_data=lambda name: None,
+    )
+    asked = reset_bench("axle", service, Me(name="anna", role="engineer", tokens=True))
+    if refused:
+        with pytest.raises(RefusedError, match=f"the motor had {abs(speed_rad_s)} rad/s"):
+            asyncio.run(asked)
+    else:
+        asyncio.run(asked)
+    assert reset == ([] if refused else ["axle"])

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import datetime
 import http.client
 import stat
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -90,6 +92,28 @@ def test_an_expired_token_opens_nothing(tmp_path: Path) -> None:
             assert refused.value.status == 401
 
 
+@pytest.mark.slow
+def test_what_is_shown_live_ends_with_the_token_or_session_that_asked(tmp_path: Path) -> None:
+    data = tmp_path / "data"
+    database = environment_of(data)["HIL_DATABASE"]
+    secret = make_token(data, database, "anna", "admin").secret
+    with served(data, state=tmp_path / "state", token=secret) as service:
+        made = service.post("/tokens", {"name": "bert", "role": "viewer"})
+        session = _logged_in(service, secret).partition(";")[0]
+        with (
+            _live(service, {"authorization": f"Bearer {made['secret']}"}) as revoked,
+            _live(service, {"cookie": session}) as closed,
+            _live(service, {"authorization": f"Bearer {secret}"}) as valid,
+        ):
+            for one in (revoked, closed, valid):
+                assert _next(one) == "state"
+            service.ask("DELETE", f"/api/v1/tokens/{made['token']['id']}")
+            assert _last(revoked) == "signed_out"
+            assert _as(service, {"cookie": session}, "DELETE", "/session") == 204
+            assert _last(closed) == "signed_out"
+            assert _next(valid) in ("here", "state")
+
+
 def test_the_folder_is_the_owners_alone(tmp_path: Path) -> None:
     data = tmp_path / "data"
     data.mkdir(mode=0o755)
@@ -109,6 +133,33 @@ def _logged_in(service: Served, secret: str, proto: str = "") -> str:
         return str(answer.getheader("set-cookie"))
     finally:
         connection.close()
+
+
+@contextlib.contextmanager
+def _live(service: Served, headers: dict[str, str]) -> Iterator[http.client.HTTPResponse]:
+    where = urlsplit(service.url)
+    connection = http.client.HTTPConnection(where.hostname or "", where.port, timeout=30)
+    try:
+        connection.request("GET", "/api/v1/benches/sim/live", headers=headers)
+        yield connection.getresponse()
+    finally:
+        connection.close()
+
+
+def _next(answer: http.client.HTTPResponse) -> str:
+    """The name of the next event; '' where the answer is over."""
+    while line := answer.readline().decode():
+        if line.startswith("event:"):
+            return line.removeprefix("event:").strip()
+    return ""
+
+
+def _last(answer: http.client.HTTPResponse) -> str:
+    """The name of the last event of an answer that ends."""
+    name = ""
+    while following := _next(answer):
+        name = following
+    return name
 
 
 def _as(service: Served, headers: dict[str, str], method: str = "GET", path: str = "/me") -> int:

@@ -6,6 +6,7 @@ import { findStopPost } from "./api/client.ts";
 import { titleOf, to } from "./addresses.ts";
 import { refusal } from "./data.ts";
 import { t } from "./i18n/text.ts";
+import { useLost } from "./live.ts";
 import { dismiss } from "./question.ts";
 import { usePlace, useTitle } from "./router.ts";
 import { session } from "./session.ts";
@@ -39,6 +40,9 @@ export function App(): JSX.Element {
     refusal.value = null;
     dismiss(); // it was of the view before
   }, [place]);
+  const isLost = useLost();
+  useEffect(() => { document.documentElement.classList.toggle("stale", isLost); }, [isLost]); // what is shown is of before
+  useEffect(() => { if (who.state === "out") dismiss(); }, [who.state]); // nobody is there who could answer
   if (place.view === "wall" && who.state === "in") return <main id="main"><View place={place} /></main>;
   return (
     <>

@@ -1,7 +1,7 @@
 // What the service answers, kept while it is asked again; and work that may be refused.
 
 import { useCallback, useEffect, useRef, useState } from "preact/hooks";
-import { get, Refused } from "./api/client.ts";
+import { get, Refused, SignedOut } from "./api/client.ts";
 import { Store } from "./store.ts";
 
 export interface Asked<T> {
@@ -54,7 +54,8 @@ export async function attempt<T>(work: () => Promise<T> | T, at: Store<Error | n
   try {
     return await work();
   } catch (error) {
-    if (!(error instanceof DOMException && error.name === "AbortError")) at.value = error as Error; // what nobody waits for any more
+    const isGone = error instanceof DOMException && error.name === "AbortError"; // nobody waits for it any more
+    if (!isGone && !(error instanceof SignedOut)) at.value = error as Error;
     return null;
   }
 }

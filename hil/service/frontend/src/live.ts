@@ -2,7 +2,7 @@
 
 import { useEffect, useState } from "preact/hooks";
 import { API } from "./api/client.ts";
-import { silent } from "./api/reached.ts";
+import { noteUnknown, silent } from "./api/reached.ts";
 import type { Bench, Run } from "./api/types.ts";
 import { Store, useStore } from "./store.ts";
 
@@ -52,6 +52,7 @@ export interface Live {
 }
 
 const LOST_MS = 15_000;
+const AGAIN_MS = 2000;
 
 // Whether the service is heard of: what is shown may be old otherwise.
 export const lost = new Store(false);
@@ -128,7 +129,23 @@ function watchedOf(bench: string): Watched {
   return known;
 }
 
+// A browser gives up on an answer that is none: who asks is not known any more, or a proxy answers for a service that
+// is away. The first is for the session to find out, the second is asked again.
 function open(bench: string, channels: string[], live: Live, onSamples: (samples: Samples) => void): () => void {
+  let timer = 0, close = () => {};
+  const begin = () => {
+    close = follow(bench, channels, live, onSamples, () => {
+      close();
+      lost.value = true;
+      noteUnknown();
+      timer = window.setTimeout(begin, AGAIN_MS);
+    });
+  };
+  begin();
+  return () => { clearTimeout(timer); close(); };
+}
+
+function follow(bench: string, channels: string[], live: Live, onSamples: (samples: Samples) => void, onEnd: () => void): () => void {
   const query = new URLSearchParams(channels.map((channel) => ["channel", channel]));
   const events = new EventSource(`${API}/benches/${encodeURIComponent(bench)}/live${channels.length ? `?${query}` : ""}`);
   let heard = Date.now();
@@ -142,8 +159,12 @@ function open(bench: string, channels: string[], live: Live, onSamples: (samples
   take<{ run: number; criteria: Criterion[] }>("criteria", (found) => { live.criteria.value = found; });
   take<{ run: number; marks: Mark[] }>("marks", (found) => { live.marks.value = found; });
   take("here", () => {}); // nothing is new
+  events.addEventListener("signed_out", onEnd);
   events.onopen = () => { heard = Date.now(); lost.value = false; };
-  events.onerror = () => { lost.value = true; };
+  events.onerror = () => {
+    lost.value = true;
+    if (events.readyState === EventSource.CLOSED) onEnd();
+  };
   const timer = setInterval(() => { if (Date.now() - heard > LOST_MS) lost.value = true; }, 1000);
   return () => { events.close(); clearInterval(timer); lost.value = false; };
 }

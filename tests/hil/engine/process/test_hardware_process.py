@@ -68,7 +68,7 @@ def test_a_run_with_a_prompt_passes_and_its_recording_is_there(tmp_path: Path):
     assert (outcome.error, outcome.result.safe_state) == (None, "confirmed")
     recording = read_recording(outcome.recording)
     assert recording.metadata["run"]["operator"] == "A"
-    assert any(event.text == "confirmed by the operator: yes" for event in recording.events)
+    assert any(event.text == "confirmed by the operator; remark: yes" for event in recording.events)
     assert operator.told[0].startswith("stand clear")
 
 

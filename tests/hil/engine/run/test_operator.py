@@ -76,7 +76,9 @@ def test_an_emergency_stop_of_another_way_says_who_from_where_and_how_and_counts
 
 
 @pytest.mark.parametrize("virtual", [False, True])
-@pytest.mark.parametrize(("answer", "said"), [("", ""), ("torque wrench 4711", ": torque wrench 4711")])
+@pytest.mark.parametrize(
+    ("answer", "said"), [("", ""), ("torque wrench 4711", "; remark: torque wrench 4711")]
+)
 def test_a_prompt_is_confirmed_by_any_line(answer: str, said: str, virtual: bool) -> None:
     operator, _ = at(Answering(answer), virtual=virtual)
     assert operator.confirm("inspect the shafts", 5.0) == f"confirmed by the operator{said}"
@@ -102,9 +104,16 @@ def test_who_is_asked_may_decline_also_in_end_steps(
         operator.confirm("ready", 5.0)
 
 
+def test_who_does_not_continue_is_the_reason_of_the_end() -> None:
+    operator, _ = at(Answering("q"))
+    with pytest.raises(InterruptError) as declined:
+        operator.confirm("Is the cage shut?", 5.0)
+    assert str(declined.value) == "stopped by the operator, who did not continue at 'Is the cage shut?'"
+
+
 def test_a_pause_at_a_prompt_is_an_answer_and_holds_nothing_afterwards() -> None:
     operator, _ = at(Answering("p"))
-    assert operator.confirm("ready", 5.0) == "confirmed by the operator: p"
+    assert operator.confirm("ready", 5.0) == "confirmed by the operator; remark: p"
     assert not operator.take_pause()
 
 

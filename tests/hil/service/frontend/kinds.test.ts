@@ -23,6 +23,13 @@ test("each of the API's states, verdicts, roles and kinds has words", () => {
 
 test("a name that is not known is shown as it is, in words", () => assert.equal(kindInWords("some_thing"), "some thing"));
 
+test("a run whose end a person wanted has not failed", () => {
+  const ended = (reason: string, verdict: Run["verdict"] = "error") => runInWords({ state: "ended", verdict, reason });
+  assert.deepEqual([ended("stopped by the operator"), ended("stopped by the operator, who did not continue at 'Is the cage shut?'")], ["ended early", "ended early"]);
+  assert.deepEqual([ended("emergency stop: requested by anna on the service's page\n  make sure"), ended("emergency stop: the operator typed e"), ended("stopped before it began: emergency stop since 12:00", null)], ["stopped", "stopped", "stopped"]);
+  assert.deepEqual([ended("emergency stop: the door is open"), ended("stopped by the operator, when the process that holds the bench was killed"), ended("operator prompt: no answer to 'ready' within 5 s"), ended("stopped by the operator", "fail")], ["error", "error", "error", "fail"]);
+});
+
 test("a run has one word, of its state and its verdict", () => {
   const runs = [["ended", "pass"], ["ended", null], ["interrupted", "error"], ["interrupted", null], ["cancelled", null], ["queued", null]] as [Run["state"], NonNullable<Run["verdict"]> | null][];
   assert.deepEqual(runs.map(([state, verdict]) => runInWords({ state, verdict })), ["pass", "error", "interrupted", "interrupted", "cancelled", "queued"]);

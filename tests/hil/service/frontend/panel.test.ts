@@ -5,7 +5,7 @@ import test from "node:test";
 import type { Bench, Run } from "../../../../hil/service/frontend/src/api/types.ts";
 import type { BenchState } from "../../../../hil/service/frontend/src/live.ts";
 import { soundOf } from "../../../../hil/service/frontend/src/ui/sound.ts";
-import { aboutBench, headlineOf, isFreshStandstill, isRecentLook, lastSpeedText, leftOf, messageOf, nextOf, wallWordOf, wordOf } from "../../../../hil/service/frontend/src/views/bench-words.ts";
+import { aboutBench, asOf, headlineOf, isFreshStandstill, isRecentLook, isSeenTurning, lastSpeedText, leftOf, messageOf, nextOf, wallWordOf, wordOf } from "../../../../hil/service/frontend/src/views/bench-words.ts";
 
 const RUN = { id: 7, plan: "steps", title: "Steps", requested_by: "anna", doing: "tip_in", share: 0.25, state: "running", started_at: "2026-11-28T10:00:00Z" } as Run;
 const QUESTION = { text: "Is the cage shut?", answer_by: "2026-11-28T10:10:00Z", picture: "" };
@@ -22,6 +22,7 @@ test("a bench is said in one word", () => {
 test("a paused run is headed so, and its message has no keys of a terminal", () => {
   const held = { ...RUN, doing: "held: oil" }, { bench } = stateOf("running", held), message = "held: oil\nlet it cool\nr and Enter: resume; q and Enter: end the run";
   assert.deepEqual([headlineOf(bench, "Steps", false, true), headlineOf(bench, "Steps")], ["Paused: Steps", "Running: Steps"]);
+  assert.deepEqual([headlineOf(bench, "Steps", false, true, true), asOf(true, "Free"), asOf(false, "Free")], ["Question: Steps", "Last known: Free", "Free"]);
   assert.equal(messageOf({ running: held, message }), "held: oil\nlet it cool");
   assert.equal(messageOf({ running: RUN, message }), "");
 });
@@ -75,11 +76,12 @@ test("beside a reset stands the speed that was measured last, and how long ago",
   assert.match(lastSpeedText(bench, now), /not known: the service was started since.*Look whether the axle stands/);
 });
 
-test("a look at the speed counts for five seconds, and looks go on where the newest is of the last eight", () => {
+test("a look at the speed counts for five seconds, and looks go on where the newest is of the last ten", () => {
   const at = "2026-11-28T10:00:00Z", now = Date.parse(at) + 4000, late = now + 2000, { bench } = stateOf("emergency_stop");
   const stood = { ...bench, last_speed: { speed_rad_s: 0.1, at, turns: false } }, turned = { ...bench, last_speed: { speed_rad_s: 90, at, turns: true } };
   assert.deepEqual([isFreshStandstill(stood, now), isFreshStandstill(stood, late), isFreshStandstill(turned, now), isFreshStandstill(bench, now)], [true, false, false, false]);
-  assert.deepEqual([isRecentLook(turned, late), isRecentLook(turned, late + 3000), isRecentLook(bench, now)], [true, false, false]);
+  assert.deepEqual([isRecentLook(turned, late), isRecentLook(turned, late + 5000), isRecentLook(bench, now)], [true, false, false]);
+  assert.deepEqual([isSeenTurning(turned, late), isSeenTurning(turned, late + 5000), isSeenTurning(stood, late), isSeenTurning(bench, now)], [true, false, false, false]);
 });
 
 test("from a stop to the end of its run it is said when somebody can reset it", () => {

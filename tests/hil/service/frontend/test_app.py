@@ -96,7 +96,7 @@ def test_a_run_is_queued_and_ended_by_keyboard_alone(page: playwright.Page, ther
         page.keyboard.press("Tab")
     page.keyboard.press("Enter")
     expect(page.get_by_text("Is the cage shut?")).to_be_visible()
-    page.get_by_role("button", name="End the run").focus()
+    page.get_by_role("button", name="End the run", exact=True).focus()
     page.keyboard.press("Enter")
     expect(region(page, "Why it did not pass")).to_contain_text("stopped by the operator")
 
@@ -108,10 +108,9 @@ def test_a_service_without_news_is_not_taken_for_lost(page: playwright.Page, the
         """async () => {
           const events = new EventSource("/api/v1/benches/sim/live");
           const here = () => new Promise((heard) => events.addEventListener("here", heard, { once: true }));
-          await here();
-          await here();
+          for (let times = 0; times < 9; times++) await here();
           events.close();
-        }"""  # twice ten seconds without news: longer than the page waits for a word
+        }"""  # nine times two seconds without news: longer than the page waits for a word
     )
     expect(page.get_by_text("The service does not answer")).to_be_hidden()
 
@@ -121,7 +120,7 @@ def test_a_question_is_answered_on_the_operator_panel(page: playwright.Page, the
     to(page, there, "benches/sim/panel")
     expect(page.get_by_text("Is the cage shut?")).to_be_visible()
     expect(page.locator(".dials")).to_contain_text("limit ±700")
-    page.get_by_label("Answer").fill("yes")
+    page.get_by_label("Remark").fill("yes")
     page.keyboard.press("Enter")
     assert there.over(run)["verdict"] == "pass"
     expect(heading(page, "Free")).to_be_visible()

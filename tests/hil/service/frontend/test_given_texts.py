@@ -98,10 +98,10 @@ def test_nothing_that_is_pasted_is_cut_and_the_limit_is_said(page: playwright.Pa
     there.until(run, lambda found: found["prompt"] is not None)
     try:
         to(page, there, "benches/sim")
-        _pasted(page, page.get_by_label("Answer"), "y" * 550)
+        _pasted(page, page.get_by_label("Remark"), "y" * 550)
         _refused(page, 500)
         page.keyboard.press("Enter")
-        page.get_by_label("Answer").fill("")
+        page.get_by_label("Remark").fill("")
         page.get_by_text("Reserve the bench", exact=True).click()
         _pasted(page, page.get_by_label("What for"), "endurance " * 25)
         _refused(page, 200)
@@ -127,12 +127,12 @@ def test_an_answer_that_was_refused_stays_in_its_field(page: playwright.Page, th
     there.until(run, lambda found: found["prompt"] is not None)
     try:
         to(page, there, "benches/sim")
-        page.get_by_label("Answer").fill("bell \x85")  # no character of a line
-        page.get_by_role("button", name="Continue").click()
+        page.get_by_label("Remark").fill("bell \x85")  # no character of a line
+        page.get_by_role("button", name="Continue", exact=True).click()
         expect(page.get_by_role("alert")).to_contain_text("has characters that it must not have")
-        expect(page.get_by_label("Answer")).to_have_value("bell \x85")
-        page.get_by_label("Answer").fill("yes")
-        page.get_by_role("button", name="Continue").click()
+        expect(page.get_by_label("Remark")).to_have_value("bell \x85")
+        page.get_by_label("Remark").fill("yes")
+        page.get_by_role("button", name="Continue", exact=True).click()
         expect(page.get_by_role("region", name="Question")).to_have_count(0)
     finally:
         there.over(run)

@@ -56,9 +56,25 @@ def test_a_question_stands_on_the_panel_with_its_picture_and_the_time_left(
     )
     assert small == []
     refuse_hard_to_use(page)
-    page.get_by_role("button", name="Continue").click()
+    page.get_by_role("button", name="Continue", exact=True).click()
     assert there.over(run)["verdict"] == "pass"
     expect(heading(page, "Free")).to_be_visible()
+
+
+def test_who_does_not_continue_ends_the_run(page: playwright.Page, there: Served) -> None:
+    """A 'no' that was typed was recorded as a confirmation, and the run went on."""
+    run = there.queue("asking")
+    to(page, there, "benches/sim")
+    expect(heading(page, "Question: A plan that asks")).to_be_visible()
+    page.get_by_label("Remark").fill("no")
+    page.get_by_role("button", name="Do not continue: end the run").click()
+    over = there.over(run)
+    assert over["reason"] == "stopped by the operator, who did not continue at 'Is the cage shut?'"
+    assert over["safe_state"] == "confirmed"
+    to(page, there, f"runs/{run}")
+    expect(heading(page, "A plan that asks ended early")).to_be_visible()
+    to(page, there, "benches")
+    expect(page.get_by_text("No run has failed since")).to_be_visible()
 
 
 def test_tones_call_who_has_turned_them_on_and_no_one_else(page: playwright.Page, there: Served) -> None:

@@ -53,7 +53,7 @@ def test_a_run_is_paused_everywhere_and_goes_on(page: playwright.Page, there: Se
     to(page, there, "benches/sim/panel")
     page.get_by_role("button", name="Resume").click()
     expect(heading(page, "Running")).to_be_visible()
-    page.get_by_role("button", name="End the run").click()
+    page.get_by_role("button", name="End the run", exact=True).click()
     assert there.over(run)["reason"] == "stopped by the operator"
     to(page, there, f"runs/{run}")
     events = region(page, "Segments and events")

@@ -198,7 +198,7 @@ def test_after_a_stop_the_panel_shows_no_old_values_and_no_time_left(
     to(page, there, "benches/sim/panel")
     page.get_by_role("button", name="Emergency stop sim").click()
     expect(page.locator("h1")).to_contain_text("Emergency stop")
-    expect(page.get_by_role("button", name="End the run")).to_have_count(0)
+    expect(page.get_by_role("button", name="End the run", exact=True)).to_have_count(0)
     expect(page.locator(".dials dd:not(.quiet)").first).to_contain_text("–")
     expect(page.get_by_text(re.compile("about .* left"))).to_have_count(0)
 

@@ -105,7 +105,7 @@ _PARTS = {
     "torque request",
     # at the terminal, in the report, between processes, as a service starts
     "r and Enter: resume; q and Enter: end the run",
-    "Press Enter to continue, q and Enter to end the run.",
+    "Press Enter to continue, q and Enter to end the run. Other text is a remark: the run goes on.",
     "the operator",
     "its own frames",
     "counts the samples of the time base",

@@ -2,10 +2,11 @@
 
 import { t } from "../i18n/text.ts";
 import { noteDate } from "./clock.ts";
-import { noteAnswer, noteSilence } from "./reached.ts";
+import { noteAnswer, noteSilence, noteUnknown } from "./reached.ts";
 import type { Health, Problem } from "./types.ts";
 
 export const API = "/api/v1";
+export const WHO = "/me"; // says whether it still knows who asks
 
 export class Refused extends Error {
   readonly status: number;
@@ -21,6 +22,9 @@ export class Refused extends Error {
     this.fix = problem.fix ?? "";
   }
 }
+
+// The token or session is not valid any more: the page offers to sign in, so that no view says what was refused.
+export class SignedOut extends Refused {}
 
 type Body = object | string | Uint8Array<ArrayBuffer> | undefined;
 
@@ -54,7 +58,9 @@ async function fetched(method: string, path: string, body: Body, signal?: AbortS
   noteDate(answer.headers.get("date"));
   const text = await answer.text();
   if (answer.ok) return { text, tag: (answer.headers.get("etag") ?? "").replace(/^(?:W\/)?"|"$/g, "") };
-  throw new Refused(answer.status, problemOf(answer.status, text));
+  if (answer.status !== 401 || path === "/session") throw new Refused(answer.status, problemOf(answer.status, text));
+  if (path !== WHO) noteUnknown();
+  throw new SignedOut(answer.status, problemOf(answer.status, text));
 }
 
 function problemOf(status: number, text: string): Problem {

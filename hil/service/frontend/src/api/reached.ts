@@ -1,4 +1,4 @@
-// Whether the service answers what it is asked: what is shown may be old otherwise.
+// Whether the service answers what it is asked, and knows who asks: what is shown may be old otherwise.
 
 import { Store } from "../store.ts";
 
@@ -14,4 +14,11 @@ export function noteAnswer(): void {
 
 export function noteSilence(): void {
   if (Date.now() - answeredMs > LATE_MS) silent.value = true;
+}
+
+// Counts the answers by which the service may no longer know who asks; the session looks whether that is so.
+export const unknown = new Store(0);
+
+export function noteUnknown(): void {
+  unknown.value += 1;
 }

@@ -37,6 +37,7 @@ const FORMS: Phrase[] = [
   [/^ends after (?<seconds>\S+) s: not recorded any longer; the axle turns: (?<channel>\S+) reads (?<speed>.+)$/, (of) => t("the run-down is not recorded any longer after {seconds} s; {channel} {speed}", turning(of))],
   [/^cancelled by (?<person>.+)$/, (of) => t("cancelled by {person}", of)],
   [/^stopped by the operator$/, () => t("stopped by the operator")],
+  [/^stopped by the operator, who did not continue at '(?<question>.+)'$/s, (of) => t("stopped by the operator, who did not continue at '{question}'", of)],
   [/^the service ended during the run; data measured before that is kept$/, () => t("the service ended during the run; data measured before that is kept")],
   [/^the agent ended during the run; data measured before that is kept$/, () => t("the agent ended during the run; data measured before that is kept")],
   [/^the service ended before the recording started; the run can be queued again$/, () => t("the service ended before the recording started; the run can be queued again")],

@@ -20,6 +20,8 @@ export const REFUSALS: Phrase[] = [
   said("ask an engineer"),
   // benches
   said("a run is still being ended"),
+  said("the axle turns: at the last look the motor had {speed}"),
+  said("wait until it stands, or brake it; then reset"),
   said("a run is under way there"),
   said("await it, or abort it"),
   said("wait for its end"),

@@ -128,7 +128,8 @@ export const runPhrases = (words: Words): Phrase[] => [
   // questions, and who has confirmed
   said("operator prompt"),
   said("no operator: a simulated bench continues"),
-  said("confirmed by the operator: {answer}"),
+  said("confirmed by the operator; remark: {answer}"),
+  said("confirmed by the operator: {answer}"), // of earlier versions
   said("confirmed by the operator"),
   said("confirmed in advance by {person}"),
   // why a criterion has no value

@@ -2,11 +2,12 @@
 
 import type { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
-import { API, ask } from "../api/client.ts";
+import { API, ask, Refused } from "../api/client.ts";
 import type { Health } from "../api/types.ts";
 import { attempt, useData } from "../data.ts";
 import { t } from "../i18n/text.ts";
 import { lookWho, session } from "../session.ts";
+import { useStore } from "../store.ts";
 
 // Why the provider's way back signed nobody in, as `?sign_in=` says it.
 const REASONS: Record<string, () => string> = {
@@ -20,10 +21,12 @@ const REASONS: Record<string, () => string> = {
 export function SignIn(): JSX.Element {
   const health = useData<Health>("/health");
   const [reason] = useState(takeReason);
+  const who = useStore(session), ended = who.state === "out" && who.ended;
   const provider = health.data?.sign_in ?? "";
   return (
     <div class="card narrow">
       <h1>{t("Sign in")}</h1>
+      {ended ? <p class="alarm" role="alert">{t("You are no longer signed in: the session has ended, or the token was revoked. Sign in again.")}</p> : null}
       {reason ? <p class="alarm" role="alert">{reason}</p> : null}
       {provider ? <p><a class="button main" href={wayIn()}>{t("Sign in with {provider}", { provider })}</a></p> : null}
       {provider ? <details><summary>{t("Sign in with a token")}</summary><TokenForm /></details> : health.loading ? null : <TokenForm first />}
@@ -37,7 +40,7 @@ function TokenForm({ first = false }: { first?: boolean }): JSX.Element {
   useEffect(() => { if (first) secret.current?.focus(); }, []);
   const submit = async (event: Event) => {
     event.preventDefault();
-    const opened = await attempt(async () => { await ask("POST", "/session", { secret: secret.current?.value ?? "" }); return true; });
+    const opened = await attempt(async () => { await signIn(secret.current?.value ?? ""); return true; });
     if (opened) await lookWho();
   };
   return (
@@ -47,6 +50,16 @@ function TokenForm({ first = false }: { first?: boolean }): JSX.Element {
       <p class="quiet">{t("An administrator makes tokens.")}</p>
     </form>
   );
+}
+
+// What has other characters than a token is none: how the API's field is called says nothing to a person.
+async function signIn(secret: string): Promise<void> {
+  try {
+    await ask("POST", "/session", { secret });
+  } catch (error) {
+    if (!(error instanceof Refused) || error.status !== 422) throw error;
+    throw new Refused(401, { what: "this token is not known, has expired or was revoked", where: "", fix: "enter it as it was made, without anything around it, or ask an administrator for a new one" });
+  }
 }
 
 // To the provider, and from there back to the view that was asked for.

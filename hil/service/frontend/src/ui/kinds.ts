@@ -4,7 +4,7 @@ import { t } from "../i18n/text.ts";
 
 const KINDS: Record<string, string> = {
   pass: t("pass"), fail: t("fail"), error: t("error"), done: t("done"), undecided: t("undecided"), informational: t("informational"), did_not_settle: t("did not settle"), not_judged: t("not judged"),
-  waiting_approval: t("waiting approval"), queued: t("queued"), waiting: t("waiting"), running: t("running"), stopping: t("stopping"), ended: t("ended"), interrupted: t("interrupted"), cancelled: t("cancelled"), failed: t("failed"),
+  waiting_approval: t("waiting approval"), queued: t("queued"), waiting: t("waiting"), running: t("running"), stopping: t("stopping"), ended: t("ended"), interrupted: t("interrupted"), cancelled: t("cancelled"), failed: t("failed"), stopped: t("stopped"), ended_early: t("ended early"),
   viewer: t("viewer"), operator: t("operator"), engineer: t("engineer"), admin: t("admin"), agent: t("agent"),
   arriving: t("arriving"), checking: t("checking"), ready: t("ready"), refused: t("refused"),
   bench: t("bench"), plan: t("plan"), model: t("model"), controller: t("controller"), diagnosis: t("diagnosis"), identification: t("identification"), transfer_function: t("transfer function"), physical: t("physical"),

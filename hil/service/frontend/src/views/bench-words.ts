@@ -31,15 +31,19 @@ export function reservedText(bench: Bench): string {
 // The colours of a bench: its state, or that it waits for a person.
 export const lookOf = (bench: Bench, run: Run | null): string => (run?.prompt || isReserved(bench) ? "in_use" : bench.state);
 
-// `ending`: its run is being ended; `held`: it waits for a cause to be gone or for Resume.
-export function headlineOf(bench: Bench, title: string | null, ending = false, held = false): string {
+// `ending`: its run is being ended; `held`: it waits for a cause to be gone or for Resume; `asks`: it waits for an answer.
+export function headlineOf(bench: Bench, title: string | null, ending = false, held = false, asks = false): string {
   if (bench.stop_confirmed === false) return t("Emergency stop asked for, NOT CONFIRMED");
   if (title !== null && bench.state === "running") {
     if (ending) return t("Being ended: {plan}", { plan: title });
+    if (asks) return t("Question: {plan}", { plan: title });
     return held ? t("Paused: {plan}", { plan: title }) : t("Running: {plan}", { plan: title });
   }
   return isReserved(bench) ? reservedText(bench) : STATES[bench.state];
 }
+
+// What a bench did when the service was last heard of: of now nothing is known.
+export const asOf = (isLost: boolean, words: string): string => (isLost ? t("Last known: {state}", { state: words }) : words);
 
 // To be read from afar.
 export function wordOf(bench: Bench, run: Run | null): string {
@@ -102,7 +106,7 @@ export function resetText(next: Run | null | undefined): string {
 }
 
 const FRESH_MS = 5000; // a look at the speed says something of now
-const RECENT_MS = 8000; // the newest of looks that go on: while an axle turns there is one every five or six seconds
+const RECENT_MS = 10_000; // the newest of looks that go on: while an axle turns there is one every five or six seconds
 
 const isWithin = (bench: Bench, nowMs: number, ms: number): boolean => bench.last_speed != null && nowMs - Date.parse(bench.last_speed.at) <= ms;
 
@@ -111,6 +115,9 @@ export const isFreshStandstill = (bench: Bench, nowMs: number): boolean => isWit
 
 // Whether the service's looks at the speed go on, so that what a window shows of it is of now.
 export const isRecentLook = (bench: Bench, nowMs: number): boolean => isWithin(bench, nowMs, RECENT_MS);
+
+// Whether the service has just seen that the motor turns: it resets no stop then.
+export const isSeenTurning = (bench: Bench, nowMs: number): boolean => isRecentLook(bench, nowMs) && bench.last_speed?.turns === true;
 
 // What happens from a stop to the end of its run: until then nobody can reset it, and somebody must afterwards.
 export const stoppingText = (): string =>

@@ -6,9 +6,10 @@ import { to } from "../addresses.ts";
 import { useData } from "../data.ts";
 import { English } from "../i18n/english.tsx";
 import { t, tn, tx } from "../i18n/text.ts";
+import { useLost } from "../live.ts";
 import { Heading, linkTo, Loaded } from "../ui/parts.tsx";
 import { AfterStop } from "./bench-banner.tsx";
-import { aboutBench, lookOf, wordOf } from "./bench-words.ts";
+import { aboutBench, asOf, lookOf, wordOf } from "./bench-words.ts";
 import { EndedBadly } from "./ended-badly.tsx";
 
 const AGAIN_MS = 2000;
@@ -36,7 +37,7 @@ function Card({ bench }: { bench: Bench }): JSX.Element {
     <li class={`card bench ${lookOf(bench, null)}`}>
       <h2><a href={to.bench(bench.name)}>{bench.name}</a></h2>
       <p class="quiet">{aboutBench(bench, bench.title)}</p>
-      <p class="state">{wordOf(bench, run)}</p>
+      <p class="state">{asOf(useLost(), wordOf(bench, run))}</p>
       {bench.why ? <p><English>{bench.why}</English></p> : null}
       {bench.state === "emergency_stop" ? <AfterStop bench={bench} /> : null}
       {run ? <p>{tx("<a>Run {run}</a>: {plan}, by {person}", { a: linkTo(to.run(run.id)), run: run.id, plan: run.title || run.plan, person: run.requested_by })}</p> : null}

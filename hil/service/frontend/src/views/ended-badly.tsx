@@ -1,4 +1,5 @@
-// Runs that ended badly while nobody looked: last night's stand where somebody comes in the morning.
+// Runs that ended badly while nobody looked: last night's stand where somebody comes in the morning. Not those whose end
+// a person wanted.
 
 import type { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
@@ -27,7 +28,8 @@ export function EndedBadly(): JSX.Element | null {
   const judged = useData<FoundRuns>(`/run-list?${new URLSearchParams([["since", since], ["verdict", "fail"], ["verdict", "error"], ["most", LOOKED_AT]])}`, AGAIN_MS);
   const newest = useData<FoundRuns>(`/run-list?${new URLSearchParams([["since", since], ["state", "ended"], ["state", "interrupted"], ["most", LOOKED_AT]])}`, AGAIN_MS);
   if (!judged.data || !newest.data) return null;
-  const runs = badOf([...judged.data.runs, ...newest.data.runs]), more = Math.max(runs.length, judged.data.total) - SHOWN;
+  const runs = badOf([...judged.data.runs, ...newest.data.runs]), wanted = judged.data.runs.filter(({ run }) => !isBad(run)).length;
+  const more = Math.max(runs.length, judged.data.total - wanted) - SHOWN;
   const from = moment(since);
   if (!runs.length) return <p class="quiet">{t("No run has failed since {moment}.", { moment: from })}</p>;
   return (

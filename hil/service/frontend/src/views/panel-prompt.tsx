@@ -14,6 +14,7 @@ import { LimitedField } from "../ui/too-long.tsx";
 const LITTLE_S = 30;
 export const LONGEST_ANSWER = 500;
 
+// Whatever is typed is a remark: a "no" goes on, too, so that a button of its own says no.
 // An answer reaches the run only while whoever drives its bench is there.
 export function PromptCard({ prompt, run, reached }: { prompt: Prompt; run: number; reached: boolean }): JSX.Element {
   const may = useMay(), [text, setText] = useState("");
@@ -28,8 +29,9 @@ export function PromptCard({ prompt, run, reached }: { prompt: Prompt; run: numb
         <Countdown until={prompt.answer_by} />
         {may("operator") && reached ? (
           <form class="row" onSubmit={send}>
-            <LimitedField label={t("Answer")} most={LONGEST_ANSWER} value={text} onText={setText} />
+            <LimitedField label={t("Remark")} most={LONGEST_ANSWER} value={text} onText={setText} />
             <button type="submit" class="main">{t("Continue")}</button>
+            <button type="button" onClick={() => void attempt(() => post(`/runs/${run}/abort`))}>{t("Do not continue: end the run")}</button>
           </form>
         ) : null}
       </div>

@@ -6,11 +6,11 @@ import { to } from "../addresses.ts";
 import { figure, limitText, reading, roughly, wordsOf } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { t } from "../i18n/text.ts";
-import { useLive, type BenchState, type Live } from "../live.ts";
+import { useLive, useLost, type BenchState, type Live } from "../live.ts";
 import { useStore } from "../store.ts";
 import { play, soundOf, soundOn, turnSound } from "../ui/sound.ts";
 import { Actions } from "./bench-banner.tsx";
-import { aboutBench, isCause, leftOf, lookOf, messageOf, nextOf, titleOf, wordOf } from "./bench-words.ts";
+import { aboutBench, asOf, isCause, leftOf, lookOf, messageOf, nextOf, titleOf, wordOf } from "./bench-words.ts";
 import { PromptCard, useNow } from "./panel-prompt.tsx";
 import { NewestHandover } from "./team/handovers.tsx";
 
@@ -41,7 +41,7 @@ function State({ state }: { state: BenchState }): JSX.Element {
   return (
     <section class={`banner ${lookOf(bench, running)}`} aria-label={t("State of {bench}", { bench: bench.name })}>
       <p class="kind">{aboutBench(bench, bench.title || bench.name)}</p>
-      <h1 class="headline word" aria-live="assertive"><small>{bench.name}</small> {wordOf(bench, running)}</h1>
+      <h1 class="headline word" aria-live="assertive"><small>{bench.name}</small> {asOf(useLost(), wordOf(bench, running))}</h1>
       {running ? <Running state={state} /> : null}
       {bench.why && !running ? <p class="big"><English>{bench.why}</English></p> : null}
       <p class="big">{nextOf(state)}</p>

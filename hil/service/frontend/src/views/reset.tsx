@@ -8,35 +8,36 @@ import type { Bench, Run } from "../api/types.ts";
 import { attempt, useData } from "../data.ts";
 import { t } from "../i18n/text.ts";
 import { agreed, dismiss } from "../question.ts";
-import { isFreshStandstill, isRecentLook, lastSpeedText, resetText } from "./bench-words.ts";
+import { isFreshStandstill, isRecentLook, isSeenTurning, lastSpeedText, resetText } from "./bench-words.ts";
 import { useNow } from "./panel-prompt.tsx";
 
-// Unless it was just seen to stand, one click must not be enough: a recording may end before the axle stands, a
-// service that was started since knows no speed, and what was seen a while ago says little of now.
+// Where the axle was just seen to turn nobody can say that it stands. Where it was not just seen to stand either, one
+// click must not be enough: a recording may end before the axle stands, a service that was started since knows no
+// speed, and what was seen a while ago says little of now.
 export function Reset({ bench, next }: { bench: Bench; next: Run | null | undefined }): JSX.Element {
-  const said = lastSpeedText(bench, useNow()), turns = bench.last_speed?.turns ?? true;
+  const now = useNow(), said = lastSpeedText(bench, now), turns = bench.last_speed?.turns ?? true, turning = isSeenTurning(bench, now);
   const [looks, setLooks] = useState(false);
-  const reset = () => attempt(async () => { if (await isSeenToStand(bench, setLooks)) await post(`${pathOf(bench)}/reset`); });
+  const reset = () => attempt(async () => { if (await mayBeSent(bench, setLooks)) await post(`${pathOf(bench)}/reset`); });
   return (
     <>
-      <button type="button" class={turns ? "" : "main"} disabled={looks} onClick={() => void reset()}>{looks ? t("Looking at the speed …") : resetText(next)}</button>
-      <span class={turns ? "bad" : "quiet"}>{said}</span>
+      <button type="button" class={turns ? "" : "main"} disabled={looks || turning} onClick={() => void reset()}>{looks ? t("Looking at the speed …") : resetText(next)}</button>
+      <span class={turns ? "bad" : "quiet"}>{said}{turning ? ` ${t("Wait until it stands, or brake it: a reset is refused while it turns.")}` : ""}</span>
     </>
   );
 }
 
 const pathOf = (bench: Bench): string => `/benches/${encodeURIComponent(bench.name)}`;
 
-// By the service just now, or by the person who is asked. The window shows each look as it comes; one from before
+// Whether to send it: the axle was seen to stand by the service just now, or by the person who is asked. The window shows each look as it comes; one from before
 // the stop says nothing of now, so that the next one is waited for, where the service can look at all.
-async function isSeenToStand(bench: Bench, setLooks: (looks: boolean) => void): Promise<boolean> {
-  if (isFreshStandstill(bench, serviceNowMs())) return true;
+async function mayBeSent(bench: Bench, setLooks: (looks: boolean) => void): Promise<boolean> {
+  if (isFreshStandstill(bench, serviceNowMs()) || isSeenTurning(bench, serviceNowMs())) return true; // of one that turns the service refuses it
   if (!(await agreed(<Asked bench={bench} />, t("It stands still: reset"), t("Cancel")))) return false;
   const now = await get<Bench>(pathOf(bench));
   if (!now.last_speed || isRecentLook(now, serviceNowMs())) return true;
   setLooks(true);
   const newer = await nextLook(now).finally(() => { setLooks(false); });
-  return newer ? isSeenToStand(newer, setLooks) : true;
+  return newer ? mayBeSent(newer, setLooks) : true;
 }
 
 const LOOK_MS = 7000; // the service looks every 5 s, and needs a second for it

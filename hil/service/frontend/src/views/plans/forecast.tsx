@@ -24,10 +24,11 @@ interface Foreseen {
   forecast: Forecast | null;
   error: string;
   wrong?: string; // why a typed value is not taken
-  refused: boolean; // the service would not queue it either, or it exceeds the bench
+  refused: boolean; // the run would end with an error, or it exceeds the bench
+  known: boolean; // whether an answer has come
 }
 
-const NOTHING: Foreseen = { forecast: null, error: "", refused: false };
+const NOTHING: Foreseen = { forecast: null, error: "", refused: false, known: false };
 
 // `wrong`: why a typed value is not taken; nothing is asked then.
 export function useForecast(wanted: Wanted | null, wrong = ""): Foreseen {
@@ -40,12 +41,12 @@ export function useForecast(wanted: Wanted | null, wrong = ""): Foreseen {
     const predict = async () => {
       try {
         const forecast = await ask<Forecast>("POST", "/forecasts", wanted, control.signal);
-        setFound({ forecast, error: "", refused: !forecast.fits });
+        setFound({ forecast, error: "", refused: !forecast.fits, known: true });
       } catch (error) {
         if (control.signal.aborted) return;
         const { message } = error as Error, fix = error instanceof Refused ? error.fix : "";
         // what cannot be predicted may still be run
-        setFound({ forecast: null, error: fix ? `${message} (${fix})` : message, refused: !(error instanceof Refused && (error.status === 503 || error.status === 0)) });
+        setFound({ forecast: null, error: fix ? `${message} (${fix})` : message, refused: !(error instanceof Refused && (error.status === 503 || error.status === 0)), known: true });
       }
     };
     const timer = setTimeout(() => void predict(), WAIT_MS);
@@ -54,7 +55,7 @@ export function useForecast(wanted: Wanted | null, wrong = ""): Foreseen {
   return found;
 }
 
-// Nobody has to wait for it: a run is queued while it is computed, and a run that exceeds its bench is refused there.
+// A run is queued when it is known: one that does not fit its bench would only end with an error.
 // With criteria it says what each is predicted to be, else how many fail.
 export function ForecastShown({ of: { forecast, error, wrong }, criteria = false }: { of: Foreseen; criteria?: boolean }): JSX.Element {
   if (wrong) return <p class="bad">{wrong}</p>;
