@@ -5,12 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from hil.core.recording import Recording
 from hil.plant import at_true_times, even_times, held_over
 
-CLOCK = np.arange(20_000) * 1e-3
+CLOCK: npt.NDArray[np.float64] = np.arange(20_000, dtype=np.float64) * 1e-3
+EVEN: npt.NDArray[np.float64] = np.arange(5, dtype=np.float64) * 0.01
 JITTER = np.random.default_rng(0).uniform(-2e-4, 2e-4, len(CLOCK))
 KEPT = np.delete(np.arange(len(CLOCK)), [4, 5, 9_000, 15_000])
 
@@ -51,13 +53,12 @@ def test_times_over_stamps_that_jitter_or_lack_some_are_those_of_the_clock():
 def test_a_torque_held_between_uneven_stamps_keeps_its_impulse():
     stamps = np.array([0.0, 0.0103, 0.0198, 0.0301, 0.04])
     torque = np.array([1.0, 3.0, -2.0, 5.0, 7.0])
-    mean = held_over(0.01 * np.arange(5), 0.01, stamps, torque)
+    mean = held_over(EVEN, 0.01, stamps, torque)
     assert mean == pytest.approx([1.0, 2.84, -2.0, 4.93, 7.0])
     assert np.sum(mean) * 0.01 == pytest.approx(np.sum(torque * np.diff([*stamps, 0.05])))
-    even = 0.01 * np.arange(5)
-    assert held_over(even, 0.01, even, torque) == pytest.approx(torque)
+    assert held_over(EVEN, 0.01, EVEN, torque) == pytest.approx(torque)
 
 
 def test_a_torque_goes_straight_over_samples_that_were_lost():
-    mean = held_over(0.01 * np.arange(5), 0.01, np.array([0.0, 0.01, 0.04]), np.array([1.0, 2.0, 5.0]))
+    mean = held_over(EVEN, 0.01, EVEN[[0, 1, 4]], np.array([1.0, 2.0, 5.0]))
     assert mean == pytest.approx([1.0, 2.0, 3.0, 4.0, 5.0])

@@ -90,7 +90,7 @@ def test_nothing_is_missing_where_stamps_jitter() -> None:
     whole, model = chirp(0.005), Model("two_inertia", NUMBERS)
     time = whole["time_s"] + np.random.default_rng(3).uniform(-2e-4, 2e-4, whole.samples)
     kept = np.random.default_rng(4).random(whole.samples) > 0.005
-    stamped = {name: values[kept] for name, values in (whole.channels | {"time_s": time}).items()}
+    stamped = {name: values[kept] for name, values in {**whole.channels, "time_s": time}.items()}
     found = explain_gap(model, series_of(model, [Recording(stamped, whole.source)]))
     assert (found.verdict, found.effects) == ("none", ())
     assert found.numbers["torque_delay"][1] == pytest.approx(NUMBERS["torque_delay"], abs=3e-5)
