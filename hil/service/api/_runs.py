@@ -80,7 +80,7 @@ async def queue_run(wanted: RunWanted, service: TheService, me: Operator) -> Run
     )
     run, is_new = service.runs.add(new, approved=not hazard)
     if is_new:
-        service.log.add(me.name, me.role, "queue", f"run {run.id}", f"{run.plan} on {run.bench}")
+        service.log.add(me.name, me.role, "queue", f"run {run.id}", _asked(run))
         service.wake(run.bench)
         service.changed(run.bench)
     return service.with_progress(run)
@@ -178,6 +178,13 @@ def there(service: Service, run: int) -> RunData:
     if found is None:
         raise missing("run", run)
     return found
+
+
+def _asked(run: RunData) -> str:
+    """What was asked for, for the audit log: two runs of a plan with other values are not told alike."""
+    return ", ".join(
+        [f"{run.plan} on {run.bench}", *(f"{name} = {one:.12g}" for name, one in run.values.items())]
+    )
 
 
 def _running(service: Service, run: int) -> RunningRun:

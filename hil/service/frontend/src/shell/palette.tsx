@@ -11,7 +11,7 @@ import { session } from "../session.ts";
 import { Store, useStore } from "../store.ts";
 import { kindInWords } from "../ui/kinds.ts";
 import { runInWords } from "../ui/run-kind.ts";
-import { valuesOf } from "../views/runs/run-values.ts";
+import { nameOf } from "../views/runs/run-name.ts";
 import { found, type Entry } from "./matching.ts";
 import { commands } from "./commands.ts";
 import { benchInSight, focusStop, pressStopAt } from "./stop.tsx";
@@ -128,5 +128,5 @@ function useRuns(text: string): Entry[] {
 // Also by its number alone, by who asked for it and by what was tested.
 const entryOf = (run: Run): Entry => ({
   kind: t("run"), name: t("Run {run}", { run: run.id }), path: to.run(run.id), also: `Run ${run.id} #${run.id} ${run.plan} ${run.requested_by} ${run.dut}`,
-  about: [run.title || run.plan, valuesOf(run), run.bench, runInWords(run)].filter(Boolean).join(", "),
+  about: [nameOf(run), run.bench, runInWords(run)].filter(Boolean).join(", "),
 });

@@ -14,8 +14,9 @@ import { useMay, useMe } from "../session.ts";
 import { linkTo } from "../ui/parts.tsx";
 import { LimitedField } from "../ui/too-long.tsx";
 import { LONGEST_ANSWER, PromptCard } from "./panel-prompt.tsx";
-import { aboutBench, headlineOf, isCause, isEnding, isHeld, isReserved, messageOf, nextIn, nextOf, stoppingText, titleOf } from "./bench-words.ts";
+import { aboutBench, headlineOf, isCause, isEnding, isHeld, isReserved, messageOf, nextIn, nextOf, stoppingText } from "./bench-words.ts";
 import { Reset } from "./reset.tsx";
+import { nameOf } from "./runs/run-name.ts";
 
 export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 }): JSX.Element {
   const { bench, running } = state, message = messageOf(state), held = isHeld(running) && bench.state === "running";
@@ -23,7 +24,7 @@ export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 
   return (
     <section class={`banner ${isReserved(bench) ? "in_use" : bench.state}`} aria-label={t("State of {bench}", { bench: bench.name })}>
       <p class="kind">{aboutBench(bench, bench.title || bench.name)}</p>
-      <Title class="headline" aria-live="polite">{level === 1 ? <><small>{t("Bench {bench}", { bench: bench.name })}</small>{" "}</> : null}{headlineOf(bench, running ? titleOf(running) : null, isEnding(running), held)}</Title>
+      <Title class="headline" aria-live="polite">{level === 1 ? <><small>{t("Bench {bench}", { bench: bench.name })}</small>{" "}</> : null}{headlineOf(bench, running ? nameOf(running) : null, isEnding(running), held)}</Title>
       {running ? <p>{tx("<a>Run {run}</a>, by {person}: {doing}", { a: linkTo(to.run(running.id)), run: running.id, person: running.requested_by, doing: <English>{running.doing}</English> })}</p> : null}
       {held && !running?.prompt ? <p>{nextOf(state)}</p> : null}
       {bench.why && !(running && bench.state === "running") ? <p><English>{bench.why}</English></p> : null}

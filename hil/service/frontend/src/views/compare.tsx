@@ -18,6 +18,7 @@ import { levelsOf } from "./compare-levels.ts";
 import { ChooseRecordings } from "./compare-recordings.tsx";
 import { ComparedCriteria } from "./compare-criteria.tsx";
 import { Differences, Lead } from "./compare-inputs.tsx";
+import { nameOf } from "./runs/run-name.ts";
 import { ComparePlot, stretchOf } from "./compare-plot.tsx";
 
 const CHANNELS = ["shaft_torque_nm", "motor_speed_rad_s", "motor_torque_nm"];
@@ -56,7 +57,7 @@ function NoSuchRun({ run, onLeaveOut }: { run: number; onLeaveOut: () => void })
   return <p class="bad" role="status">{t("There is no run {run}", { run })}. <button type="button" onClick={onLeaveOut}>{t("Leave out run {run}", { run })}</button></p>;
 }
 
-const named = (run: Run): string => `${run.id}: ${run.title || run.plan}, ${runInWords(run)}${run.ended_at ? `, ${moment(run.ended_at)}` : ""}`;
+const named = (run: Run): string => `${run.id}: ${nameOf(run)}, ${runInWords(run)}${run.ended_at ? `, ${moment(run.ended_at)}` : ""}`;
 
 const OFFERED = [["state", "ended"], ["state", "interrupted"], ["most", "100"]];
 

@@ -13,6 +13,7 @@ import { useMay } from "../../session.ts";
 import { kindInWords } from "../../ui/kinds.ts";
 import { Badge, Facts, FileLink, Heading, Loaded, Moment, Scroll, Section } from "../../ui/parts.tsx";
 import { NoneThere } from "../none-there.tsx";
+import { nameOf } from "../runs/run-name.ts";
 import { useRecordings } from "../recordings/recordings.tsx";
 
 const AGAIN_MS = 2000;
@@ -54,7 +55,7 @@ export function ChooseRuns({ legend, chosen, onChange, without = [] }: { legend:
   return (
     <fieldset class="ticks"><legend>{legend}</legend>
       {others.map((id) => tick(id, t("run {run}", { run: id })))}
-      {offered.map((run) => tick(run.id, t("run {run}: {plan}, {bench}", { run: run.id, plan: run.title || run.plan, bench: run.bench })))}
+      {offered.map((run) => tick(run.id, t("run {run}: {plan}, {bench}", { run: run.id, plan: nameOf(run), bench: run.bench })))}
       {all.data && !offered.length && !others.length ? <p class="quiet">{t("There is no recording yet.")}</p> : null}
     </fieldset>
   );
