@@ -14,7 +14,7 @@ import { useQuery } from "../router.ts";
 import { runInWords } from "../ui/run-kind.ts";
 import { linkTo, Heading, Section } from "../ui/parts.tsx";
 import { recordingsFrom, type Beside } from "./compare-beside.ts";
-import { levelsOf } from "./compare-levels.ts";
+import { failedIn, levelsOf } from "./compare-levels.ts";
 import { ChooseRecordings } from "./compare-recordings.tsx";
 import { ComparedCriteria } from "./compare-criteria.tsx";
 import { Differences, Lead } from "./compare-inputs.tsx";
@@ -137,7 +137,7 @@ function Compared({ runs, beside, query, setQuery }: { runs: number[]; beside: B
   if (error) return isMissing({ error }) ? null : <p class="bad" role="alert"><English>{error.message}</English></p>; // which is said above
   if (!views) return <p class="quiet">{t("Loading the runs …")}</p>;
   const segments = segmentsOf(views).filter(({ id }) => !pairs || pairs.every((pair) => pair.segments.some((one) => one.id === id)));
-  const segment = segments.find((one) => one.id === query.get("segment")) ?? segments[0];
+  const segment = segments.find((one) => one.id === query.get("segment")) ?? segments.find((one) => one.id === failedIn(views, segments.map(({ id }) => id))) ?? segments[0];
   const near = query.get("stretch") !== "whole";
   const put = (name: string, value: string) => {
     const next = new URLSearchParams(query);
