@@ -2,13 +2,14 @@
 
 import assert from "node:assert/strict";
 import test from "node:test";
-import { detailsOf, nameOf } from "../../../../hil/service/frontend/src/views/runs/run-name.ts";
+import { detailsOf, nameOf, shortNameOf } from "../../../../hil/service/frontend/src/views/runs/run-name.ts";
 
 const run = (plan: string, title: string, values: Record<string, number> = {}) => ({ plan, title, values });
 
 test("a run has its title, its plan and its values", () => {
   assert.equal(nameOf(run("tip_in", "Tip-in at 0 and 20 km/h", { torque_nm: 380, "speed_km_h": 2.5 })), "Tip-in at 0 and 20 km/h (tip_in, torque_nm = 380, speed_km_h = 2.5)");
   assert.equal(nameOf(run("acceptance_200", "Acceptance")), "Acceptance (acceptance_200)");
+  assert.equal(shortNameOf(run("tip_in", "Tip-in at 0 and 20 km/h", { torque_nm: 380 })), "tip_in, torque_nm = 380");
   assert.notEqual(nameOf(run("acceptance", "Acceptance")), nameOf(run("acceptance_200", "Acceptance")));
 });
 

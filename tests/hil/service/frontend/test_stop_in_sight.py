@@ -1,4 +1,4 @@
-"""The emergency stop is whole and in sight at every width of a window, beside a long name of who is signed in."""
+"""The emergency stop is whole and in sight at every width of a window, beside a long name of a person."""
 
 from __future__ import annotations
 
@@ -15,15 +15,16 @@ pytestmark = IN_A_BROWSER
 _WHO = "Maximiliane-Charlotte von Hohenstein-Wallenberg"
 _ADDRESSES = ("benches", "benches/sim", "runs", "runs/1", "plans/acceptance", "audit", "settings")
 _WIDTHS = range(320, 1281, 24)
-#: What of the stop's label is outside of the button or of the window, and by how much the page scrolls sideways.
+#: What of the stop is outside of its button or of the window, and whether the page scrolls sideways.
 _OUTSIDE = """() => {
   const stop = document.querySelector("button.stop"), words = document.createRange();
   words.selectNodeContents(stop);
-  const box = stop.getBoundingClientRect(), text = words.getBoundingClientRect(), page = document.documentElement;
+  const box = stop.getBoundingClientRect(), text = words.getBoundingClientRect();
+  const page = document.documentElement;
   return [
     text.left >= box.left && text.right <= box.right ? "" : "label out of its button",
     box.left >= 0 && box.right <= page.clientWidth && box.top >= 0 ? "" : "stop out of sight",
-    page.scrollWidth > page.clientWidth ? `scrolls by ${page.scrollWidth - page.clientWidth}` : "",
+    page.scrollWidth > page.clientWidth ? `scrolls to ${page.scrollWidth}` : "",
   ].filter(Boolean).join(", ");
 }"""
 

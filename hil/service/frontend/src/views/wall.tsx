@@ -9,7 +9,7 @@ import { t } from "../i18n/text.ts";
 import { showAs } from "../theme.ts";
 import { Badge, verdictOf } from "../ui/parts.tsx";
 import { headlineOf, holderOf, isReserved, leftOf, lookOf, nextIn, reservedText, wallWordOf } from "./bench-words.ts";
-import { nameOf } from "./runs/run-name.ts";
+import { nameOf, shortNameOf } from "./runs/run-name.ts";
 import { useNow } from "./panel-prompt.tsx";
 import { useWall, type Shown } from "./wall-data.ts";
 
@@ -58,10 +58,10 @@ function Card({ of: { bench, running, queue, latest }, nowMs, alone }: { of: Sho
           <p>{left === null ? <English>{running.doing}</English> : t("about {time} left", { time: roughly(left) })}</p>
         </>
       ) : bench.why ? <p class="why"><English>{bench.why}</English></p> : null}
-      {next ? <p class="quiet">{queue.length > 1 ? t("Next: {plan}, by {person}, and {count} more", { plan: nameOf(next), person: next.requested_by, count: queue.length - 1 }) : t("Next: {plan}, by {person}", { plan: nameOf(next), person: next.requested_by })}</p> : null}
+      {next ? <p class="quiet">{queue.length > 1 ? t("Next: {plan}, by {person}, and {count} more", { plan: shortNameOf(next), person: next.requested_by, count: queue.length - 1 }) : t("Next: {plan}, by {person}", { plan: shortNameOf(next), person: next.requested_by })}</p> : null}
       <ol aria-label={t("Last verdicts")}>
         {latest.slice(0, alone ? VERDICTS.one : VERDICTS.all).map((run) => (
-          <li key={run.id}><Badge kind={verdictOf(run)} /> <span>{nameOf(run)}</span> {run.ended_at ? <time dateTime={run.ended_at} title={run.ended_at}>{moment(run.ended_at)}</time> : null}</li>
+          <li key={run.id}><Badge kind={verdictOf(run)} /> <span>{shortNameOf(run)}</span> {run.ended_at ? <time dateTime={run.ended_at} title={run.ended_at}>{moment(run.ended_at)}</time> : null}</li>
         ))}
       </ol>
     </li>

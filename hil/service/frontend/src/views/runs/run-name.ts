@@ -18,3 +18,6 @@ export function nameOf(run: Named): string {
   const details = detailsOf(run);
   return details ? `${titleOf(run)} (${details})` : titleOf(run);
 }
+
+// Where there is room for a line and no more, without the title that others may share: "tip_in, torque_nm = 380".
+export const shortNameOf = (run: Named): string => [run.plan, valuesOf(run)].filter(Boolean).join(", ");
