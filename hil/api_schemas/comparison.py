@@ -90,8 +90,8 @@ class BestRunData(_Data):
     """The run to compare with: of those that passed the same criteria, the one farthest from its limits.
 
     That is the one whose smallest margin is largest. A margin is the distance from the value to the nearer
-    limit over the magnitude of that limit. For a run that did not pass, one of its plan, bench and values
-    comes before others, and else one that shares most of the three.
+    limit over the magnitude of that limit. A run of the same plan
+    with the same values comes before others, and of these one of the same bench.
     """
 
     run: RunData | None = Field(description="null: no run has passed the criteria of this run")
@@ -100,7 +100,7 @@ class BestRunData(_Data):
     other_values: dict[str, float] = Field(
         {}, description="values of its plan's variables that are not those of this run"
     )
-    among: int = Field(description="how many runs passed the same criteria with the same limits")
+    among: int = Field(description="of how many runs that passed, and are as near, it is the best")
 
 
 class Envelope(_Data):

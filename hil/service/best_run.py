@@ -28,9 +28,10 @@ class Setting:
     bench: str
     values: Mapping[str, float]
 
-    def shared_with(self, other: Setting) -> int:
-        """How many of the three are the same."""
-        return (self.plan == other.plan) + (self.bench == other.bench) + (self.values == other.values)
+    def nearness_to(self, other: Setting) -> int:
+        """How much of it is the same: the plan and the values count more than the bench."""
+        same_plan, same_values = self.plan == other.plan, self.values == other.values
+        return 2 * same_plan + 2 * same_values + (self.bench == other.bench)
 
 
 def best_run(
@@ -38,12 +39,12 @@ def best_run(
     passed: Mapping[int, Sequence[CriterionResult]],
     nearness: Callable[[int], int] = lambda run: 0,
 ) -> tuple[BestRun | None, int]:
-    """The best of the runs that were judged by the same criteria as a run, and how many these are.
+    """The best of the runs that were judged by the same criteria as a run, and among how many it is that.
 
     `wanted` are the criteria of that run, `passed` those of runs that passed, by number. Which plan a run is
     of does not count, so that copies do: runs with the same limits on the same criteria of their plans are of
     one kind. Checks of any device do not count, and a limit of zero has no margin. Of equals the newest
-    is best. Before all that a run with more `nearness`, by its number, is better.
+    is best. Only those of the greatest `nearness` that there is, by their numbers, are looked at.
     """
     demands = _demands(wanted)
     alike = {
@@ -51,8 +52,9 @@ def best_run(
         for number, ones in passed.items()
         if demands and _demands(ones) == demands and (margins := _margins(ones))
     }
-    ranked = [BestRun(number, margin, criterion) for number, (margin, criterion) in alike.items()]
-    return max(ranked, key=lambda one: (nearness(one.run), one.margin, one.run), default=None), len(alike)
+    nearest = max(map(nearness, alike), default=0)
+    near = [BestRun(number, *found) for number, found in alike.items() if nearness(number) == nearest]
+    return max(near, key=lambda one: (one.margin, one.run), default=None), len(near)
 
 
 def _of_plan(criteria: Sequence[CriterionResult]) -> list[CriterionResult]:

@@ -28,6 +28,10 @@ _FIELDS = {
 _OPTION = re.compile(r"(?P<command>\bhil(?: [a-z]+)+ )?(?<![\w-])(?P<option>--[a-z][a-z-]*[a-z])")
 #: A place on the machine: from the root, with a folder at least.
 _PLACE = re.compile(r"(?<![\w./:])/(?:[^\s/:;,'\"]+/)+(?P<name>[^\s/:;,'\"]*)")
+#: A way out that needs an option, where another way out follows.
+_AVOIDABLE = re.compile(
+    r"(?<![^\s])(?:choose|give|name) (?:[^;:,()]*? )?(?P<option>--[a-z][a-z-]*[a-z])[^;:,()]*, or "
+)
 _ELSEWHERE = "options with -- are those of the command at a terminal: this page has none for it"
 
 
@@ -42,6 +46,7 @@ def in_plain_words(text: str, names: Mapping[str, str], *, hide_places: bool = T
         text = text.replace(path, names[path])
     if hide_places:
         text = _PLACE.sub(lambda found: found["name"] or "a folder of the service", text)
+    text = _AVOIDABLE.sub(lambda found: found[0] if found["option"] in _FIELDS else "", text)
     left: list[str] = []
 
     def field(found: re.Match[str]) -> str:

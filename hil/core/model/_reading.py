@@ -87,7 +87,8 @@ def _kind(kind: Any) -> str:
     if isinstance(kind, str) and kind in MODEL_KINDS:
         return kind
     known = did_you_mean(kind, MODEL_KINDS) if isinstance(kind, str) else ", ".join(MODEL_KINDS)
-    raise BadInputError(f"kind is {shown(kind)}", fix=f"kind is one of: {known}")
+    what = "kind is missing" if kind is None else f"kind is {shown(kind)}"
+    raise BadInputError(what, fix=f"kind is one of: {known}")
 
 
 def _table(value: Any, name: str, mistakes: Mistakes) -> dict[str, Any]:

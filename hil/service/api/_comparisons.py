@@ -34,7 +34,7 @@ async def compare_runs(
 async def find_best_run(service: TheService, me: Viewer, run: Annotated[RunId, Query()]) -> BestRunData:
     """Of the runs that passed the same criteria with the same limits, the one farthest from its limits.
 
-    For a run that did not pass, those of its own plan, bench and values come first.
+    Those of its own plan with its own values come first.
     """
     del me
     of = _over(service, run)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import APIRouter, Header, Query
+from pydantic import StringConstraints
 from starlette.responses import Response
 
 from hil.api_schemas.api import (
@@ -30,6 +31,8 @@ from hil.service.worker_pool.plan_reading import hazard_of
 
 router = APIRouter(prefix="/runs", tags=["runs"])
 _LAST = 2**31 - 1
+#: The key of a step in a plan.
+StepKind = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
 
 
 @router.get("", name="list_runs")
@@ -39,13 +42,17 @@ async def list_runs(
     bench: Annotated[BenchName | None, Query()] = None,
     state: Annotated[list[RunState] | None, Query(max_length=6)] = None,
     verdict: Annotated[list[RunVerdict] | None, Query(max_length=4)] = None,
+    step: Annotated[list[StepKind] | None, Query(max_length=8)] = None,
     before: Annotated[int, Query(ge=1, le=_LAST)] = _LAST,
     most: Annotated[int, Query(ge=1, le=200)] = 50,
 ) -> list[RunData]:
-    """Runs, newest first, of any of the states and verdicts given; `before` is the number of a run."""
+    """Runs, newest first, of any of the states and verdicts given; `before` is the number of a run.
+
+    With `step`, only runs of plans that have a step of one of these kinds.
+    """
     del me
     found = service.runs.all(
-        bench=bench, states=state or (), verdicts=verdict or (), before=before, most=most
+        bench=bench, states=state or (), verdicts=verdict or (), before=before, most=most, steps=step or ()
     )
     return [service.with_progress(run) for run in found]
 
@@ -80,7 +87,7 @@ async def queue_run(wanted: RunWanted, service: TheService, me: Operator) -> Run
     )
     run, is_new = service.runs.add(new, approved=not hazard)
     if is_new:
-        service.log.add(me.name, me.role, "queue", f"run {run.id}", f"{run.plan} on {run.bench}")
+        service.log.add(me.name, me.role, "queue", f"run {run.id}", _asked(run))
         service.wake(run.bench)
         service.changed(run.bench)
     return service.with_progress(run)
@@ -178,6 +185,13 @@ def there(service: Service, run: int) -> RunData:
     if found is None:
         raise missing("run", run)
     return found
+
+
+def _asked(run: RunData) -> str:
+    """What was asked for, for the audit log: two runs of a plan with other values are not told alike."""
+    return ", ".join(
+        [f"{run.plan} on {run.bench}", *(f"{name} = {one:.12g}" for name, one in run.values.items())]
+    )
 
 
 def _running(service: Service, run: int) -> RunningRun:

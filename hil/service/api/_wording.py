@@ -63,7 +63,7 @@ def _what(error: Mapping[str, Any]) -> str:
     value = error.get("input")
     shown = isinstance(value, int | float) and not isinstance(value, bool) and what.startswith("must")
     number = f"{value:g}" if isinstance(value, float) else str(value)
-    return printable(f"{what}, not {number}" if shown else what, 500)
+    return printable(f"{what}, not {printable(number)}" if shown else what, 500)
 
 
 def _of_pattern(pattern: str) -> str:

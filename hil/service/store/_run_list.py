@@ -140,8 +140,9 @@ def _conditions(wanted: RunsWanted) -> list[ColumnElement[bool]]:
         found.append(wanted.until > _MOMENT)
     if wanted.text:
         noted = select(NoteRow.run).where(NoteRow.text.icontains(wanted.text, autoescape=True))
+        tagged = select(TagRow.run).where(TagRow.tag.icontains(wanted.text, autoescape=True))
         own = (column.icontains(wanted.text, autoescape=True) for column in _SEARCHED)
-        found.append(or_(*own, RunRow.id.in_(noted)))
+        found.append(or_(*own, RunRow.id.in_(noted), RunRow.id.in_(tagged)))
     if wanted.criterion and wanted.above is not None:
         found.append(CriterionRow.value >= wanted.above)
     if wanted.criterion and wanted.below is not None:

@@ -8,7 +8,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from sqlalchemy import ColumnElement, Engine, func, select, update
+from sqlalchemy import ColumnElement, Engine, func, or_, select, update
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session, sessionmaker
 
@@ -102,8 +102,9 @@ class RunStore:
         before: int,
         most: int,
         verdicts: Sequence[str] = (),
+        steps: Sequence[str] = (),
     ) -> list[RunData]:
-        """Runs, newest first; of those in given states, and with given verdicts."""
+        """Runs, newest first; of given states and verdicts, and of plans with one of some kinds of steps."""
         chosen = select(RunRow).order_by(RunRow.id.desc()).limit(most).where(RunRow.id < before)
         if bench is not None:
             chosen = chosen.where(RunRow.bench == bench)
@@ -111,6 +112,8 @@ class RunStore:
             chosen = chosen.where(RunRow.state.in_(states))
         if verdicts:
             chosen = chosen.where(RunRow.verdict.in_(verdicts))
+        if steps:  # a step begins with its kind; a plan that only mentions it is found, too
+            chosen = chosen.where(or_(*(RunRow.plan_text.contains(f"{kind}:") for kind in steps)))
         with self._transaction() as session:
             return [run_data(row) for row in session.scalars(chosen)]
 

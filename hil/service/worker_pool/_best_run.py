@@ -13,8 +13,9 @@ from hil.service.best_run import Setting, best_run
 def best(run: int, passed: bool, criteria: str, usual: Mapping[str, Mapping[str, float]]) -> dict[str, Any]:
     """Number, margin and criterion of the best run, and among how many; the number is None if there is none.
 
-    Beside a run that did not pass, one of the same plan, bench and values comes before a better one.
-    `other_values` are those of the best run that are not the run's own.
+    Runs of the same plan with the same values come before better ones, then those of the same bench; the run
+    itself counts with the nearest of the others. `other_values` are those of the best run that are not the
+    run's own.
 
     Args:
         run: the run whose criteria count.
@@ -31,12 +32,12 @@ def best(run: int, passed: bool, criteria: str, usual: Mapping[str, Mapping[str,
         int(number): Setting(plan, bench, {**usual.get(plan, {}), **json.loads(values)})
         for number, (plan, bench, values) in beside["settings"].items()
     }
-    mine = settings[run]
+    mine, wanted = settings[run], found.pop(run)
+    nearness = {number: setting.nearness_to(mine) for number, setting in settings.items()}
+    one, among = best_run(wanted, found, nearness.__getitem__)
     if passed:
-        one, among = best_run(found[run], found)
-    else:
-        wanted = found.pop(run)
-        one, among = best_run(wanted, found, lambda number: settings[number].shared_with(mine))
+        nearness[run] = 0 if one is None else nearness[one.run]
+        one, among = best_run(wanted, {run: wanted, **found}, nearness.__getitem__)
     if one is None:
         return {"run": None, "among": among}
     values = {

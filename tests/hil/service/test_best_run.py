@@ -107,12 +107,26 @@ def test_beside_a_failed_run_one_of_its_plan_bench_and_values_comes_before_a_bet
         (60.0, "p", "other", {"torque_nm": 100.0}),
     ]
     found = best(1, passed=False, criteria=beside(*runs), usual=_USUAL)
-    assert (found["run"], found["other_values"], found["among"]) == (3, {}, 3)
+    assert (found["run"], found["other_values"], found["among"]) == (3, {}, 1)
     found = best(1, passed=False, criteria=beside(*runs[:2]), usual=_USUAL)
     assert (found["run"], found["other_values"]) == (2, {"torque_nm": 20.0})
 
 
-def test_a_run_that_passed_is_told_of_a_better_one_whatever_it_was_given() -> None:
+def test_beside_a_run_that_passed_too_those_of_its_plan_and_values_come_first() -> None:
+    runs: list[_Run] = [
+        (400.0, "p", "sim", {"torque_nm": 380.0}),
+        (50.0, "p", "sim", {"torque_nm": 100.0}),  # far better, at less torque
+        (300.0, "p", "other", {"torque_nm": 380.0}),
+    ]
+    found = best(1, passed=True, criteria=beside(*runs), usual=_USUAL)
+    assert (found["run"], found["other_values"], found["among"]) == (3, {}, 2)
+    found = best(3, passed=True, criteria=beside(*runs), usual=_USUAL)
+    assert (found["run"], found["among"]) == (3, 2)
+    found = best(2, passed=True, criteria=beside(*runs[:2]), usual=_USUAL)
+    assert (found["run"], found["among"]) == (2, 2)
+
+
+def test_a_run_that_passed_is_told_of_a_better_one_of_other_values_where_none_is_like_it() -> None:
     runs: list[_Run] = [(400.0, "p", "sim", {}), (50.0, "copy", "other", {"torque_nm": 20.0})]
     found = best(1, passed=True, criteria=beside(*runs), usual=_USUAL)
     assert (found["run"], found["other_values"]) == (2, {"torque_nm": 20.0})

@@ -19,6 +19,8 @@ from hil.service.plain_words import in_plain_words, names_in, without_folders
         ("2 of 10 min (--at-most)", "2 of 10 min (the time limit)"),
         ("run 'hil identify --from-hz 1' first", "run 'hil identify --from-hz 1' first"),
         ("5 km/h and 3 rad/s, and/or 1 /s", "5 km/h and 3 rad/s, and/or 1 /s"),
+        ("choose with --segment, or run a plan; segments: s", "run a plan; segments: s"),
+        ("give --columns, or another file", "give the columns, or another file"),
         ("see https://example.org/a/b", "see https://example.org/a/b"),
     ],
 )

@@ -183,13 +183,15 @@ def _earlier(url: str, revision: str) -> None:
     engine.dispose()
 
 
-def test_words_are_looked_for_in_reasons_and_notes_too(engine: Engine) -> None:
-    notes = Base.metadata.tables["notes"]
+def test_words_are_looked_for_in_reasons_notes_and_tags_too(engine: Engine) -> None:
+    notes, tags = Base.metadata.tables["notes"], Base.metadata.tables["tags"]
     with sessionmaker(engine).begin() as session:
         session.execute(
             insert(_RUNS), [a_run(1, reason="trip: shaft torque above 900 N m"), a_run(2), a_run(3)]
         )
         session.execute(insert(notes), [{"run": 3, "at": _BEGAN, "who": "anna", "text": "Belt was warm"}])
+        session.execute(insert(tags), [{"run": 2, "tag": "axle-7", "who": "anna", "at": _BEGAN}])
     listed = RunList(engine)
     assert found(listed, text="SHAFT torque") == [1]
     assert found(listed, text="belt") == [3]
+    assert found(listed, text="AXLE-7") == [2]

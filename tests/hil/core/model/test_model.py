@@ -28,6 +28,11 @@ def two_inertia() -> dict[str, Any]:
     }
 
 
+def test_a_kind_that_is_missing_is_called_missing() -> None:
+    with pytest.raises(BadInputError, match="kind is missing"):
+        model_from_dict({"parameters": {}}, "m.toml")
+
+
 @pytest.mark.parametrize("name", ["three_inertia", "paper_functions"])
 def test_shipped_models_survive_being_written_and_read(name, tmp_path):
     model = load_model(BENCHES / f"{name}.toml")

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import test from "node:test";
-import { levelsOf } from "../../../../hil/service/frontend/src/views/compare-levels.ts";
+import { failedIn, levelsOf } from "../../../../hil/service/frontend/src/views/compare-levels.ts";
 
 const judged = (id: string, upper: number | null, lower: number | null, verdict: "pass" | "fail") => ({ id, upper, lower, verdict });
 const of = (segment: string, channel: string, ...criteria: ReturnType<typeof judged>[]) => levelsOf([{ criteria }], segment, channel);
@@ -23,4 +23,11 @@ test("a limit on a time or an energy is no line", () => {
 test("a limit of several runs is one line, failed where one of them fails it", () => {
   const [one, other] = ["pass", "fail"].map((verdict) => ({ criteria: [judged("s.peak_shaft_torque", 150, null, verdict as "pass")] }));
   assert.deepEqual(levelsOf([one, other].filter((view) => view !== undefined), "s", "shaft_torque_nm"), [{ value: 150, failed: true }]);
+});
+
+test("runs are laid over each other in the first segment that one of them failed in", () => {
+  const good = { criteria: [judged("at_0.peak_shaft_torque", 150, null, "pass"), judged("at_20.peak_shaft_torque", 150, null, "pass")] };
+  const bad = { criteria: [judged("at_0.peak_shaft_torque", 150, null, "pass"), judged("at_20.peak_shaft_torque", 150, null, "fail")] };
+  assert.equal(failedIn([good, bad], ["at_0", "at_20"]), "at_20");
+  assert.equal(failedIn([good, good], ["at_0", "at_20"]), "");
 });

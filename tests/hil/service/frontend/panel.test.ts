@@ -7,7 +7,7 @@ import type { BenchState } from "../../../../hil/service/frontend/src/live.ts";
 import { soundOf } from "../../../../hil/service/frontend/src/ui/sound.ts";
 import { aboutBench, asOf, headlineOf, isFreshStandstill, isRecentLook, isSeenTurning, lastSpeedText, leftOf, messageOf, nextOf, wallWordOf, wordOf } from "../../../../hil/service/frontend/src/views/bench-words.ts";
 
-const RUN = { id: 7, plan: "steps", title: "Steps", requested_by: "anna", doing: "tip_in", share: 0.25, state: "running", started_at: "2026-11-28T10:00:00Z" } as Run;
+const RUN = { id: 7, plan: "steps", title: "Steps", values: {}, requested_by: "anna", doing: "tip_in", share: 0.25, state: "running", started_at: "2026-11-28T10:00:00Z" } as Run;
 const QUESTION = { text: "Is the cage shut?", answer_by: "2026-11-28T10:10:00Z", picture: "" };
 const stateOf = (state: Bench["state"], running: Run | null = null, queue: Run[] = []): BenchState => ({ bench: { name: "sim", state, lease: "" } as Bench, running, message: "", queue, viewers: [] });
 

@@ -29,6 +29,7 @@ test("a range is read from its text, and nonsense is none", () => {
   for (const shown of ["whole" as const, { follow: 30 }, { from: 1.5, to: 2.25 }]) assert.deepEqual(rangeFrom(rangeText(shown)), shown);
   for (const text of ["2,1", "a,b", "1", "1,2,3", null]) assert.equal(rangeFrom(text), null);
   assert.deepEqual(numbersFrom(numbersText([1.25, 3])), [1.25, 3]);
+  assert.deepEqual([numbersFrom("1e99,2,-1e99"), rangeFrom("0,1e99"), rangeFrom("-1e99,0")], [[2], null, null]); // no moments of a run
 });
 
 test("what follows ends at the newest sample, what holds stays", () => {

@@ -123,3 +123,20 @@ def test_a_campaign_is_begun_by_the_form_and_removed(page: playwright.Page, ther
     answer(page, "Remove")
     expect(heading(page, "Campaigns")).to_be_visible()
     expect(page.get_by_text("by_form")).to_have_count(0)
+
+
+def test_each_wrong_field_of_the_form_keeps_its_message(page: playwright.Page, there: Served) -> None:
+    to(page, there, "campaigns")
+    typed = {"Draws": "2.5", "Seed": "-1", "Pass share": "2", "Name": "<b>x</b>"}
+    button, messages = page.get_by_role("button", name="Simulate"), page.locator("form .refused")
+    expect(page.get_by_label("Draws")).to_be_visible()
+    for number, (label, text) in enumerate(typed.items(), 1):
+        page.get_by_label(label, exact=True).fill(text)
+        page.get_by_label("Title", exact=True).focus()
+        expect(messages).to_have_count(number)
+        expect(button).to_be_disabled()
+    refuse_hard_to_use(page)
+    for _ in typed:
+        page.locator("form input[aria-invalid=true]").first.fill("1")
+    expect(messages).to_have_count(0)
+    expect(button).to_be_enabled()

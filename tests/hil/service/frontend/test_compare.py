@@ -66,7 +66,9 @@ def test_a_run_of_a_copy_is_compared_with_the_best_run_in_one_click(
     there.over(there.queue("copied"))
     to(page, there, "runs/1")
     expect(
-        page.get_by_text(re.compile("The best of 2 runs that passed these criteria: margin \\d"))
+        page.get_by_text(
+            re.compile("The best of the 2 runs most like it that passed these criteria: margin \\d")
+        )
     ).to_be_visible()
     to(page, there, "compare?runs=1")
     group = choice(page, "and").locator("optgroup")

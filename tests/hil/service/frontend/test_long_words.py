@@ -123,6 +123,31 @@ def test_no_view_scrolls_sideways_however_long_the_words(page: playwright.Page, 
     assert found == []
 
 
+@pytest.mark.parametrize("locale", ["en-US", "de", "ja"])
+def test_the_forecast_beside_a_bench_shows_every_column_at_a_width_of_1280(
+    page: playwright.Page, there: Served
+) -> None:
+    to(page, there, f"benches/{WORD}?plan=acceptance")
+    table = page.locator(".forecast .scroll")
+    expect(table.locator("tbody tr").first).to_be_visible(timeout=240_000)
+    assert table.evaluate("one => one.scrollWidth - one.clientWidth") <= 0
+
+
+def test_a_table_that_is_wider_than_its_place_shows_that_more_is_there(
+    page: playwright.Page, there: Served
+) -> None:
+    page.set_viewport_size({"width": 390, "height": 844})
+    to(page, there, "runs")
+    table = page.locator(".scroll").first
+    expect(table.locator("tbody tr").first).to_be_visible()
+    assert table.evaluate("one => one.scrollWidth > one.clientWidth")
+    assert "local" in table.evaluate("one => getComputedStyle(one).backgroundAttachment")
+    to(page, there, "audit")
+    page.set_viewport_size({"width": 1280, "height": 844})
+    expect(table.locator("tbody tr").first).to_be_visible()
+    assert table.evaluate("one => one.scrollWidth - one.clientWidth") <= 0
+
+
 def test_the_editors_forecast_shows_every_column_at_a_width_of_1280(
     page: playwright.Page, there: Served
 ) -> None:

@@ -62,18 +62,22 @@ def test_a_run_is_paused_everywhere_and_goes_on(page: playwright.Page, there: Se
 
 
 @pytest.mark.parametrize(
-    "words", ["plan short 100", "100 short", "local short", "sim-0001 pass", "run {run}", "#{run}"]
+    "words",
+    ["plan short 100", "100 short", "local short", "sim-0001 pass", "belt short", "run {run}", "#{run}"],
 )
 def test_a_run_is_found_by_all_of_its_words_in_any_order(
     page: playwright.Page, there: Served, words: str
 ) -> None:
     ended = [one["id"] for one in there.get("/runs") if one["plan"] == "short"]
     run = ended[0] if ended else there.over(there.queue(values={"torque_nm": 100}))["id"]
+    there.ask("PUT", f"/api/v1/runs/{run}/tags/belt-7")
     to(page, there, "benches")
     page.get_by_role("button", name="Find").click()
     page.keyboard.type(words.format(run=run))
     offered = page.get_by_role("dialog").get_by_role("option")
-    expect(offered.filter(has_text=f"Run {run}")).to_contain_text("A short plan, torque_nm = 100, sim, pass")
+    expect(offered.filter(has_text=f"Run {run}")).to_contain_text(
+        "A short plan (short, torque_nm = 100), sim, pass"
+    )
     offered.filter(has_text=f"Run {run}").click()
     expect(page.get_by_text(f"Run {run} on sim")).to_be_visible()
 

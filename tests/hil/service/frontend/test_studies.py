@@ -125,3 +125,16 @@ def test_a_model_is_identified_from_a_run_kept_designed_for_and_diagnosed(
     expect(heading(page, re.compile("Diagnosis 3"))).to_be_visible()
     page.get_by_role("button", name="Cancel").click()
     expect(heading(page, re.compile("Diagnosis 3 (cancelled|ended)"))).to_be_visible()
+
+
+def test_only_runs_of_plans_with_chirps_or_multisines_are_offered_to_identify(
+    page: playwright.Page, there: Served
+) -> None:
+    there.give("short", SHORT)
+    there.over(run := there.queue("short"))
+    to(page, there, "identifications")
+    offered = page.get_by_role("group", name="Runs with chirps or multisines")
+    expect(offered.get_by_role("checkbox", name="run 1: chirp")).to_be_visible()
+    expect(offered.get_by_role("checkbox", name=f"run {run}:")).to_have_count(0)
+    to(page, there, "diagnoses")
+    expect(page.get_by_role("checkbox", name=f"run {run}: short").first).to_be_visible()

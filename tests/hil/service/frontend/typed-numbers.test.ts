@@ -39,3 +39,7 @@ test("a value that is refused is named with its bounds", () => {
   assert.equal(wrongIn(PLAN, { torque_nm: "" }), "torque_nm in N m: It is empty: write a number.");
   assert.deepEqual([valuesOf(PLAN, { torque_nm: "20,5" }), areUsual(PLAN, { torque_nm: "150,0" }), areUsual(PLAN, { torque_nm: "200" })], [{ torque_nm: 20.5 }, true, false]);
 });
+
+test("of a very long text a message has the two ends", () => {
+  for (const typed of ["9".repeat(300), "x".repeat(10_000), "9".repeat(10_000), `0.${"1".repeat(10_000)}`]) assert.ok(whyNoNumber(typed, { max: 0, min: 0, whole: true }).length < 150, typed.slice(0, 3));
+});

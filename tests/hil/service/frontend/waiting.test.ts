@@ -5,7 +5,7 @@ import test from "node:test";
 import type { Bench, Run } from "../../../../hil/service/frontend/src/api/types.ts";
 import { whyItWaits, type Around } from "../../../../hil/service/frontend/src/views/runs/waiting-words.ts";
 
-const RUN = { id: 9, plan: "steps", title: "Steps", bench: "sim", requested_by: "ben", state: "queued" } as Run;
+const RUN = { id: 9, plan: "steps", title: "Steps", values: {}, bench: "sim", requested_by: "ben", state: "queued" } as Run;
 const OTHER = { ...RUN, id: 7, requested_by: "anna", state: "running" } as Run;
 const around = (bench: Partial<Bench>, more: Partial<Around> = {}): Around => ({ bench: { name: "sim", state: "free", lease: "", ...bench } as Bench, running: null, queue: [RUN], ...more });
 const HELD = { id: 1, bench: "sim", who: "chen", begins: "2026-11-28T10:00:00Z", ends: "2026-11-28T12:00:00Z", reason: "endurance", admitted: [] };

@@ -41,10 +41,13 @@ export function rangeFrom(text: string | null): Shown | null {
   const last = /^last(\d+(?:\.\d+)?)$/.exec(text);
   if (last) return { follow: Math.max(1, Number(last[1])) };
   const [from, to, more] = text.split(",").map(Number);
-  return from !== undefined && to !== undefined && more === undefined && to > from ? { from, to } : null;
+  return from !== undefined && to !== undefined && more === undefined && to > from && isMoment(from) && isMoment(to) ? { from, to } : null;
 }
 
-export const numbersFrom = (text: string | null): number[] => (text ?? "").split(",").filter(Boolean).map(Number).filter(Number.isFinite).slice(0, 6);
+// A moment of a run can be that; others stand in an address that somebody made up.
+const isMoment = (seconds: number): boolean => seconds >= -1e6 && seconds <= 1e9;
+
+export const numbersFrom = (text: string | null): number[] => (text ?? "").split(",").filter(Boolean).map(Number).filter(isMoment).slice(0, 6);
 export const numbersText = (values: readonly number[]): string => values.map(inAddress).join(",");
 
 // Places on a logarithmic axis: one to nine of each decade. uPlot's own never end where a range begins just below a decade.

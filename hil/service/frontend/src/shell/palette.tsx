@@ -11,7 +11,7 @@ import { session } from "../session.ts";
 import { Store, useStore } from "../store.ts";
 import { kindInWords } from "../ui/kinds.ts";
 import { runInWords } from "../ui/run-kind.ts";
-import { valuesOf } from "../views/runs/run-values.ts";
+import { nameOf } from "../views/runs/run-name.ts";
 import { found, type Entry } from "./matching.ts";
 import { commands } from "./commands.ts";
 import { benchInSight, focusStop, pressStopAt } from "./stop.tsx";
@@ -112,12 +112,13 @@ function useRuns(text: string): Entry[] {
     const control = new AbortController();
     const find = async () => {
       // of the list and not by its address: a number of no run is no mistake
-      const numbered = isNumberOfRun(number) ? get<Run[]>(`/runs?${new URLSearchParams({ before: String(number + 1), most: "1" })}`, control.signal).then((all) => all.filter((run) => run.id === number)) : null;
-      const worded = [...new Set(words ? [words, longestOf(words)] : [])].map((one) => get<FoundRuns>(`/run-list?${new URLSearchParams({ text: one, most: "20" })}`, control.signal).then(({ runs: all }) => all.map(({ run }) => run)));
-      const verdict = verdictIn(words), judged = verdict ? get<FoundRuns>(`/run-list?${new URLSearchParams({ verdict, most: "20" })}`, control.signal).then(({ runs: all }) => all.map(({ run }) => run)) : null;
-      const asked = [numbered, ...worded, judged, get<Run[]>("/runs?most=5", control.signal)].map((one) => one?.catch(() => []) ?? []);
-      const all = (await Promise.all(asked)).flat();
-      if (!control.signal.aborted) setRuns([...new Map(all.map((run) => [run.id, run])).values()].map(entryOf));
+      const listed = (filters: Record<string, string>) => get<FoundRuns>(`/run-list?${new URLSearchParams({ ...filters, most: "20" })}`, control.signal).then(({ runs: all }) => all.map(({ run, tags = [] }): Tagged => ({ run, tags })));
+      const numbered = isNumberOfRun(number) ? get<Run[]>(`/runs?${new URLSearchParams({ before: String(number + 1), most: "1" })}`, control.signal).then((all) => all.filter((run) => run.id === number).map(untagged)) : null;
+      const worded = [...new Set(words ? [words, longestOf(words)] : [])].map((text) => listed({ text }));
+      const verdict = verdictIn(words), judged = verdict ? listed({ verdict }) : null;
+      const asked = [numbered, ...worded, judged, get<Run[]>("/runs?most=5", control.signal).then((all) => all.map(untagged))].map((one) => one?.catch(() => []) ?? []);
+      const all = (await Promise.all(asked)).flat().sort((one, other) => one.tags.length - other.tags.length); // the same run may come without its tags
+      if (!control.signal.aborted) setRuns([...new Map(all.map((one) => [one.run.id, one])).values()].map(entryOf));
     };
     const timer = setTimeout(() => void find(), words ? TYPING_MS : 0);
     return () => { control.abort(); clearTimeout(timer); };
@@ -125,8 +126,15 @@ function useRuns(text: string): Entry[] {
   return runs;
 }
 
-// Also by its number alone, by who asked for it and by what was tested.
-const entryOf = (run: Run): Entry => ({
-  kind: t("run"), name: t("Run {run}", { run: run.id }), path: to.run(run.id), also: `Run ${run.id} #${run.id} ${run.plan} ${run.requested_by} ${run.dut}`,
-  about: [run.title || run.plan, valuesOf(run), run.bench, runInWords(run)].filter(Boolean).join(", "),
+interface Tagged {
+  run: Run;
+  tags: string[];
+}
+
+const untagged = (run: Run): Tagged => ({ run, tags: [] });
+
+// Also by its number alone, by who asked for it, by what was tested and by its tags.
+const entryOf = ({ run, tags }: Tagged): Entry => ({
+  kind: t("run"), name: t("Run {run}", { run: run.id }), path: to.run(run.id), also: `Run ${run.id} #${run.id} ${run.plan} ${run.requested_by} ${run.dut} ${tags.join(" ")}`,
+  about: [nameOf(run), run.bench, runInWords(run)].filter(Boolean).join(", "),
 });

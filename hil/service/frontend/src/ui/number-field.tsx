@@ -30,7 +30,7 @@ export function NumberInput({ value, onText, rested = false, describedBy, min, m
         onInput={(event) => { setTyped(event.currentTarget.value); if (!rested) give(event.currentTarget.value); }}
         onChange={(event) => { if (rested) give(event.currentTarget.value); }}
         onBlur={() => { if (typed !== null && pointed(typed) !== null) setTyped(null); }} />
-      {typed !== null && why ? <span class="bad small refused" role="alert">{why}</span> : null}
+      {why && (typed !== null || value !== "") ? <span class="bad small refused" role="alert">{why}</span> : null}
     </>
   );
 }

@@ -29,14 +29,19 @@ export function pointed(typed: string, language: string = LANGUAGE): string | nu
 
 export const numberIn = (typed: string): number => { const text = pointed(typed); return text === null ? NaN : Number(text); };
 
+const LONGEST_SHOWN = 40, KEPT = 16;
+
+// What somebody typed, in a message: of a very long text its two ends.
+const shown = (text: string): string => (text.length > LONGEST_SHOWN ? `${text.slice(0, KEPT)}…${text.slice(-KEPT)}` : text);
+
 // Why a field's text is not taken; '' if it is.
 export function whyNoNumber(typed: string, { min, max, whole = false, required = false }: Bounds, language: string = LANGUAGE): string {
   if (typed.trim() === "") return required ? t("It is empty: write a number.") : "";
   const text = pointed(typed, language), mark = groupMark(language), bare = typed.trim();
-  if (text === null) return MAY_GROUP[mark].test(bare) ? t("\"{typed}\" may be two numbers: write {point} or {plain}.", { typed, point: bare.replace(mark, mark === "," ? "." : ","), plain: bare.replace(mark, "") }) : t("\"{typed}\" is no number: write it as 20.5, without other signs.", { typed });
-  const value = Number(text);
-  if (whole && !Number.isInteger(value)) return t("{value} is no whole number.", { value: text });
+  if (text === null) return MAY_GROUP[mark].test(bare) ? t("\"{typed}\" may be two numbers: write {point} or {plain}.", { typed: shown(typed), point: bare.replace(mark, mark === "," ? "." : ","), plain: bare.replace(mark, "") }) : t("\"{typed}\" is no number: write it as 20.5, without other signs.", { typed: shown(typed) });
+  const value = Number(text), said = shown(text);
+  if (whole && !Number.isInteger(value)) return t("{value} is no whole number.", { value: said });
   if ((min === undefined || value >= min) && (max === undefined || value <= max)) return "";
-  if (min === undefined) return t("{value} is beyond its bound: at most {max}.", { value: text, max: max ?? "" });
-  return max === undefined ? t("{value} is beyond its bound: at least {min}.", { value: text, min }) : t("{value} is beyond its bounds: {min} to {max}.", { value: text, min, max });
+  if (min === undefined) return t("{value} is beyond its bound: at most {max}.", { value: said, max: max ?? "" });
+  return max === undefined ? t("{value} is beyond its bound: at least {min}.", { value: said, min }) : t("{value} is beyond its bounds: {min} to {max}.", { value: said, min, max });
 }

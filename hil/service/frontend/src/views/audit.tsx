@@ -3,22 +3,15 @@
 import type { JSX } from "preact";
 import type { AuditEntry } from "../api/types.ts";
 import { useData } from "../data.ts";
-import { duration } from "../format.ts";
-import { withLocalMoments } from "../i18n/local-moments.ts";
+import { personIn } from "../i18n/said.ts";
 import { t } from "../i18n/text.ts";
 import { useQuery } from "../router.ts";
 import { useMay } from "../session.ts";
 import { actionInWords, kindInWords } from "../ui/kinds.ts";
 import { Heading, Loaded, Moment, Scroll } from "../ui/parts.tsx";
+import { detailOf, targetOf } from "./audit-words.ts";
 
 const PAGE = 100;
-const SECONDS = /^([0-9]+(?:\.[0-9]+)?) s$/;
-
-// Moments and times as everywhere on the page; the rest is what people and the service said.
-function detailOf(text: string): string {
-  const seconds = SECONDS.exec(text)?.[1];
-  return seconds === undefined ? withLocalMoments(text) : duration(Number(seconds));
-}
 
 export function Audit(): JSX.Element {
   const may = useMay();
@@ -34,7 +27,7 @@ export function Audit(): JSX.Element {
           <>
             <Scroll label={t("Audit log")}><table>
               <thead><tr><th scope="col" class="number">{t("entry")}</th><th scope="col">{t("when")}</th><th scope="col">{t("who")}</th><th scope="col">{t("role")}</th><th scope="col">{t("action")}</th><th scope="col">{t("target")}</th><th scope="col">{t("detail")}</th></tr></thead>
-              <tbody>{all.map((one) => <tr key={one.id}><td class="number">{one.id}</td><td><Moment at={one.at} exact /></td><td>{one.who}</td><td>{kindInWords(one.role)}</td><th scope="row">{actionInWords(one.action)}</th><td>{one.target}</td><td>{detailOf(one.detail)}</td></tr>)}</tbody>
+              <tbody>{all.map((one) => <tr key={one.id}><td class="number">{one.id}</td><td><Moment at={one.at} exact /></td><td>{personIn(one.who)}</td><td>{kindInWords(one.role)}</td><th scope="row">{actionInWords(one.action)}</th><td class="long">{targetOf(one.target)}</td><td class="long">{detailOf(one.detail)}</td></tr>)}</tbody>
             </table></Scroll>
             <div class="row">
               {before ? <button type="button" onClick={() => setQuery(new URLSearchParams(), true)}>{t("Newest")}</button> : null}

@@ -14,12 +14,13 @@ import { useMay, useMe } from "../session.ts";
 import { linkTo } from "../ui/parts.tsx";
 import { LimitedField } from "../ui/too-long.tsx";
 import { LONGEST_ANSWER, PromptCard } from "./panel-prompt.tsx";
-import { aboutBench, asOf, headlineOf, isCause, isEnding, isHeld, lookOf, messageOf, nextIn, nextOf, stoppingText, titleOf } from "./bench-words.ts";
+import { aboutBench, asOf, headlineOf, isCause, isEnding, isHeld, lookOf, messageOf, nextIn, nextOf, stoppingText } from "./bench-words.ts";
 import { Reset } from "./reset.tsx";
+import { nameOf } from "./runs/run-name.ts";
 
 export function Banner({ state, level = 2 }: { state: BenchState; level?: 1 | 2 }): JSX.Element {
   const { bench, running } = state, message = messageOf(state), held = isHeld(running) && bench.state === "running";
-  const words = asOf(useLost(), headlineOf(bench, running ? titleOf(running) : null, isEnding(running), held, Boolean(running?.prompt)));
+  const words = asOf(useLost(), headlineOf(bench, running ? nameOf(running) : null, isEnding(running), held, Boolean(running?.prompt)));
   const Title = level === 1 ? "h1" : "h2";
   return (
     <section class={`banner ${lookOf(bench, running)}`} aria-label={t("State of {bench}", { bench: bench.name })}>

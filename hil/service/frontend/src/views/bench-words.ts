@@ -5,6 +5,7 @@ import { figure, nearMoment, roughly } from "../format.ts";
 import { translated } from "../i18n/phrases.ts";
 import { t } from "../i18n/text.ts";
 import type { BenchState } from "../live.ts";
+import { nameOf } from "./runs/run-name.ts";
 
 const STATES: Record<Bench["state"], string> = {
   free: t("Free"), running: t("Running"), ending: t("Ending a lost run"), in_use: t("In use"), emergency_stop: t("Emergency stop"), away: t("Agent not connected"),
@@ -14,8 +15,6 @@ export const isHeld = (run: Run | null): boolean => run?.doing.startsWith("held"
 
 // Somebody has asked for its end: that cannot be taken back.
 export const isEnding = (run: Run | null): boolean => run?.doing.startsWith("being ended") ?? false;
-
-export const titleOf = (run: Run): string => run.title || run.plan;
 
 // Who has a bench for a while from now on, or by a reservation that is under way; '' for no one.
 export const holderOf = (bench: Bench): string => bench.lease || (bench.reserved_by ?? "");
@@ -80,7 +79,7 @@ export function nextOf({ bench, running, queue }: BenchState): string {
   if (running?.prompt) return t("The run goes on when the question is answered.");
   if (running && isHeld(running)) return t("The run is paused and the torque is off. It goes on when the cause is gone, or with Resume.");
   if (!first) return t("Nothing waits.");
-  const values = { plan: titleOf(first), person: first.requested_by, count: more };
+  const values = { plan: nameOf(first), person: first.requested_by, count: more };
   if (first.state === "waiting_approval") return t("Next, when an engineer approves it: {plan}, by {person}", values);
   return more > 0 ? t("Next: {plan}, by {person}, and {count} more", values) : t("Next: {plan}, by {person}", values);
 }

@@ -16,7 +16,7 @@ import { Banner } from "./bench-banner.tsx";
 import { Criteria } from "./criteria.tsx";
 import { Queue } from "./queue.tsx";
 import { limitsOf } from "./runs/failed-limits.ts";
-import { valuesOf } from "./runs/run-values.ts";
+import { detailsOf, titleOf } from "./runs/run-name.ts";
 import { StartPlan } from "./plans/start-plan.tsx";
 import { Handovers } from "./team/handovers.tsx";
 import { Reservations } from "./team/reservations.tsx";
@@ -80,7 +80,7 @@ function Latest({ bench, over }: { bench: string; over: string }): JSX.Element {
               <tbody>
                 {runs.map((run) => (
                   <tr key={run.id}>
-                    <td class="number"><a href={to.run(run.id)}>{run.id}</a></td><th scope="row">{run.title || run.plan}{valuesOf(run) ? <span class="reason">{valuesOf(run)}</span> : null}{run.reason ? <span class="reason"><English>{run.reason.split("\n")[0]}</English></span> : null}</th>
+                    <td class="number"><a href={to.run(run.id)}>{run.id}</a></td><th scope="row">{titleOf(run)}{detailsOf(run) ? <span class="reason">{detailsOf(run)}</span> : null}{run.reason ? <span class="reason"><English>{run.reason.split("\n")[0]}</English></span> : null}</th>
                     <td><Badge kind={verdictOf(run)} />{run.safe_state === "not_confirmed" ? <span class="bad"> {t("NOT CONFIRMED SAFE")}</span> : null}</td><td><Moment at={run.ended_at} /></td><td>{run.requested_by}</td>
                   </tr>
                 ))}

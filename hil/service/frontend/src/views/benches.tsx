@@ -11,6 +11,7 @@ import { Heading, linkTo, Loaded } from "../ui/parts.tsx";
 import { AfterStop } from "./bench-banner.tsx";
 import { aboutBench, asOf, lookOf, wordOf } from "./bench-words.ts";
 import { EndedBadly } from "./ended-badly.tsx";
+import { nameOf } from "./runs/run-name.ts";
 
 const AGAIN_MS = 2000;
 
@@ -40,7 +41,7 @@ function Card({ bench }: { bench: Bench }): JSX.Element {
       <p class="state">{asOf(useLost(), wordOf(bench, run))}</p>
       {bench.why ? <p><English>{bench.why}</English></p> : null}
       {bench.state === "emergency_stop" ? <AfterStop bench={bench} /> : null}
-      {run ? <p>{tx("<a>Run {run}</a>: {plan}, by {person}", { a: linkTo(to.run(run.id)), run: run.id, plan: run.title || run.plan, person: run.requested_by })}</p> : null}
+      {run ? <p>{tx("<a>Run {run}</a>: {plan}, by {person}", { a: linkTo(to.run(run.id)), run: run.id, plan: nameOf(run), person: run.requested_by })}</p> : null}
       {run ? <progress max={1} value={run.share ?? 0} aria-label={t("Progress of run {run}", { run: run.id })} /> : null}
       <p class="quiet">{bench.waiting === 0 ? t("No run waits.") : tn("{count} run waits.", "{count} runs wait.", bench.waiting)} <a href={to.panel(bench.name)} aria-label={t("Operator panel of {bench}", { bench: bench.name })}>{t("Operator panel")}</a></p>
     </li>

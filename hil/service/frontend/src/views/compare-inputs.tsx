@@ -63,7 +63,7 @@ export function Differences({ pairs }: { pairs: Comparison[] }): JSX.Element {
   }
   return (
     <Section title={t("Different inputs")} label="inputs">
-      {rows.size === 0 ? <p class="quiet">{isSaid ? t("Controllers, model and bench are identical.") : t("Controllers, model, bench and plan values are identical.")}</p> : (
+      {rows.size === 0 ? <p class="quiet">{isSaid ? t("Only the plan differs, as said above: controllers, model and bench are identical.") : t("Controllers, model, bench and plan values are identical.")}</p> : (
         <Scroll label={t("Different inputs")}>
           <table>
             <thead><tr><th scope="col">{t("kind")}</th><th scope="col">{t("value")}</th><th scope="col" class="number">{t("run {run}", { run: first })}</th>{pairs.map((pair) => <th key={pair.other.id} scope="col" class="number">{t("run {run}", { run: pair.other.id })}</th>)}</tr></thead>

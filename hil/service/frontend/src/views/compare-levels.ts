@@ -21,6 +21,10 @@ export function limitedBy({ id, upper, lower }: Pick<Judged, "id" | "upper" | "l
   return OF_SHAFT_TORQUE.includes(named.metric) ? { segment: named.segment, channel: "shaft_torque_nm", values } : null;
 }
 
+// The first of these segments that one of the runs failed in; '' for none.
+export const failedIn = (views: readonly { criteria: readonly Judged[] }[], segments: readonly string[]): string =>
+  segments.find((segment) => views.some(({ criteria }) => criteria.some(({ id, verdict }) => verdict === "fail" && namedBy(id).segment === segment))) ?? "";
+
 export function levelsOf(views: readonly { criteria: readonly Judged[] }[], segment: string, channel: string): Level[] {
   const found = new Map<number, boolean>();
   for (const one of views.flatMap(({ criteria }) => criteria)) {

@@ -14,10 +14,11 @@ import { useQuery } from "../router.ts";
 import { runInWords } from "../ui/run-kind.ts";
 import { linkTo, Heading, Section } from "../ui/parts.tsx";
 import { recordingsFrom, type Beside } from "./compare-beside.ts";
-import { levelsOf } from "./compare-levels.ts";
+import { failedIn, levelsOf } from "./compare-levels.ts";
 import { ChooseRecordings } from "./compare-recordings.tsx";
 import { ComparedCriteria } from "./compare-criteria.tsx";
 import { Differences, Lead } from "./compare-inputs.tsx";
+import { nameOf } from "./runs/run-name.ts";
 import { ComparePlot, stretchOf } from "./compare-plot.tsx";
 
 const CHANNELS = ["shaft_torque_nm", "motor_speed_rad_s", "motor_torque_nm"];
@@ -56,7 +57,7 @@ function NoSuchRun({ run, onLeaveOut }: { run: number; onLeaveOut: () => void })
   return <p class="bad" role="status">{t("There is no run {run}", { run })}. <button type="button" onClick={onLeaveOut}>{t("Leave out run {run}", { run })}</button></p>;
 }
 
-const named = (run: Run): string => `${run.id}: ${run.title || run.plan}, ${runInWords(run)}${run.ended_at ? `, ${moment(run.ended_at)}` : ""}`;
+const named = (run: Run): string => `${run.id}: ${nameOf(run)}, ${runInWords(run)}${run.ended_at ? `, ${moment(run.ended_at)}` : ""}`;
 
 const OFFERED = [["state", "ended"], ["state", "interrupted"], ["most", "100"]];
 
@@ -136,7 +137,7 @@ function Compared({ runs, beside, query, setQuery }: { runs: number[]; beside: B
   if (error) return isMissing({ error }) ? null : <p class="bad" role="alert"><English>{error.message}</English></p>; // which is said above
   if (!views) return <p class="quiet">{t("Loading the runs …")}</p>;
   const segments = segmentsOf(views).filter(({ id }) => !pairs || pairs.every((pair) => pair.segments.some((one) => one.id === id)));
-  const segment = segments.find((one) => one.id === query.get("segment")) ?? segments[0];
+  const segment = segments.find((one) => one.id === query.get("segment")) ?? segments.find((one) => one.id === failedIn(views, segments.map(({ id }) => id))) ?? segments[0];
   const near = query.get("stretch") !== "whole";
   const put = (name: string, value: string) => {
     const next = new URLSearchParams(query);

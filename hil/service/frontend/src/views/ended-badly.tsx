@@ -10,6 +10,7 @@ import { moment } from "../format.ts";
 import { English } from "../i18n/english.tsx";
 import { t, tn, tx } from "../i18n/text.ts";
 import { Badge, linkTo, Moment, Section, verdictOf } from "../ui/parts.tsx";
+import { nameOf } from "./runs/run-name.ts";
 import { visit } from "./visits.ts";
 
 const AGAIN_MS = 10_000, VISIT_MS = 60_000;
@@ -47,7 +48,7 @@ function Row({ run }: { run: Run }): JSX.Element {
   return (
     <li>
       <span>
-        <Badge kind={verdictOf(run)} /> {tx("<a>Run {run}</a>: {plan}, by {person}", { a: linkTo(to.run(run.id)), run: run.id, plan: run.title || run.plan, person: run.requested_by })}
+        <Badge kind={verdictOf(run)} /> {tx("<a>Run {run}</a>: {plan}, by {person}", { a: linkTo(to.run(run.id)), run: run.id, plan: nameOf(run), person: run.requested_by })}
         {run.safe_state === "not_confirmed" ? <span class="bad"> {t("NOT CONFIRMED SAFE")}</span> : null}
         {reason ? <span class="reason"><English>{reason}</English></span> : null}
       </span>

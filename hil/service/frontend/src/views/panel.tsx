@@ -10,8 +10,9 @@ import { useLive, useLost, type BenchState, type Live } from "../live.ts";
 import { useStore } from "../store.ts";
 import { play, soundOf, soundOn, turnSound } from "../ui/sound.ts";
 import { Actions } from "./bench-banner.tsx";
-import { aboutBench, asOf, isCause, leftOf, lookOf, messageOf, nextOf, titleOf, wordOf } from "./bench-words.ts";
+import { aboutBench, asOf, isCause, leftOf, lookOf, messageOf, nextOf, wordOf } from "./bench-words.ts";
 import { PromptCard, useNow } from "./panel-prompt.tsx";
+import { nameOf } from "./runs/run-name.ts";
 import { NewestHandover } from "./team/handovers.tsx";
 
 const SHOWN = ["motor_speed_rad_s", "vehicle_speed_m_s", "motor_torque_nm", "shaft_torque_nm"];
@@ -57,7 +58,7 @@ function Running({ state: { bench, running } }: { state: BenchState }): JSX.Elem
   if (!running) return null;
   return (
     <>
-      <p class="big"><a href={to.run(running.id)}>{t("Run {run}", { run: running.id })}</a>{`: ${titleOf(running)}`}</p>
+      <p class="big"><a href={to.run(running.id)}>{t("Run {run}", { run: running.id })}</a>{`: ${nameOf(running)}`}</p>
       <p class="quiet">{t("by {person}", { person: running.requested_by })}, <English>{running.doing}</English>{left === null ? "" : `, ${t("about {time} left", { time: roughly(left) })}`}</p>
       <progress max={1} value={running.share ?? 0} aria-label={t("Progress of the run")} />
     </>

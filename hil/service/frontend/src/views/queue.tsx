@@ -9,6 +9,7 @@ import { English } from "../i18n/english.tsx";
 import { t, tx } from "../i18n/text.ts";
 import { useMay, useMe } from "../session.ts";
 import { linkTo } from "../ui/parts.tsx";
+import { nameOf } from "./runs/run-name.ts";
 import { Admit, WhenExpected } from "./team/expected.tsx";
 
 export function Queue({ runs }: { runs: Run[] }): JSX.Element {
@@ -22,7 +23,7 @@ function Waiting({ run }: { run: Run }): JSX.Element {
   return (
     <li>
       <span>
-        {tx("<a>{run}</a>: {plan}, by {person}", { a: linkTo(to.run(run.id)), run: run.id, plan: run.title || run.plan, person: run.requested_by })}
+        {tx("<a>{run}</a>: {plan}, by {person}", { a: linkTo(to.run(run.id)), run: run.id, plan: nameOf(run), person: run.requested_by })}
         {run.state === "waiting_approval" ? <span class="reason">{t("waits for approval: {hazard}", { hazard: run.hazard })}</span> : null}
         {run.reason ? <span class="reason"><English>{run.reason}</English></span> : null}
         <WhenExpected run={run} />

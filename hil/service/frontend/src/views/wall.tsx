@@ -8,7 +8,8 @@ import { English } from "../i18n/english.tsx";
 import { t } from "../i18n/text.ts";
 import { showAs } from "../theme.ts";
 import { Badge, verdictOf } from "../ui/parts.tsx";
-import { headlineOf, holderOf, isReserved, leftOf, lookOf, nextIn, reservedText, titleOf, wallWordOf } from "./bench-words.ts";
+import { headlineOf, holderOf, isReserved, leftOf, lookOf, nextIn, reservedText, wallWordOf } from "./bench-words.ts";
+import { nameOf, shortNameOf } from "./runs/run-name.ts";
 import { useNow } from "./panel-prompt.tsx";
 import { useWall, type Shown } from "./wall-data.ts";
 
@@ -52,15 +53,15 @@ function Card({ of: { bench, running, queue, latest }, nowMs, alone }: { of: Sho
       {has ? <p>{running ? t("by {person}", { person: has }) : isReserved(bench) ? reservedText(bench) : t("reserved by {person}", { person: has })}</p> : null}
       {running ? (
         <>
-          <p class="plan">{titleOf(running)}</p>
+          <p class="plan">{nameOf(running)}</p>
           <progress max={1} value={running.share ?? 0} aria-label={t("Progress of run {run}", { run: running.id })} />
           <p>{left === null ? <English>{running.doing}</English> : t("about {time} left", { time: roughly(left) })}</p>
         </>
       ) : bench.why ? <p class="why"><English>{bench.why}</English></p> : null}
-      {next ? <p class="quiet">{queue.length > 1 ? t("Next: {plan}, by {person}, and {count} more", { plan: titleOf(next), person: next.requested_by, count: queue.length - 1 }) : t("Next: {plan}, by {person}", { plan: titleOf(next), person: next.requested_by })}</p> : null}
+      {next ? <p class="quiet">{queue.length > 1 ? t("Next: {plan}, by {person}, and {count} more", { plan: shortNameOf(next), person: next.requested_by, count: queue.length - 1 }) : t("Next: {plan}, by {person}", { plan: shortNameOf(next), person: next.requested_by })}</p> : null}
       <ol aria-label={t("Last verdicts")}>
         {latest.slice(0, alone ? VERDICTS.one : VERDICTS.all).map((run) => (
-          <li key={run.id}><Badge kind={verdictOf(run)} /> <span>{titleOf(run)}</span> {run.ended_at ? <time dateTime={run.ended_at} title={run.ended_at}>{moment(run.ended_at)}</time> : null}</li>
+          <li key={run.id}><Badge kind={verdictOf(run)} /> <span>{shortNameOf(run)}</span> {run.ended_at ? <time dateTime={run.ended_at} title={run.ended_at}>{moment(run.ended_at)}</time> : null}</li>
         ))}
       </ol>
     </li>

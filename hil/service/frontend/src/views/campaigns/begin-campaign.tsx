@@ -11,7 +11,7 @@ import { t } from "../../i18n/text.ts";
 import { go } from "../../router.ts";
 import { LONGEST_FILE, refuseTooLong, TooLong } from "../../ui/too-long.tsx";
 import { CampaignForm } from "./form-fields.tsx";
-import { campaignText, NOTHING, type Chosen, type Property } from "./campaign-form.ts";
+import { campaignText, isWrong, NOTHING, type Chosen, type Property } from "./campaign-form.ts";
 
 const FORM = "form", OWN = "own file";
 
@@ -56,7 +56,7 @@ export function BeginCampaign(): JSX.Element {
       {from === OWN ? <OwnFiles onText={(typed) => change({ typed })} onBeside={(beside) => change({ beside })} /> : null}
       <label class="field">{t("Content")}<textarea rows={byForm ? 6 : 14} spellcheck={false} required ref={refuseTooLong(text, LONGEST_FILE)} readOnly={byForm} value={text} onInput={(event) => change({ typed: event.currentTarget.value })} /></label>
       <TooLong text={text} most={LONGEST_FILE} />
-      <button type="submit" class="main">{t("Simulate")}</button>
+      <button type="submit" class="main" disabled={byForm && schema !== undefined && schema !== null && isWrong(schema, chosen)}>{t("Simulate")}</button>
     </form>
   );
 }

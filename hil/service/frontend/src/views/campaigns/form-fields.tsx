@@ -7,7 +7,7 @@ import { English } from "../../i18n/english.tsx";
 import { t } from "../../i18n/text.ts";
 import { NumberInput } from "../../ui/number-field.tsx";
 import { inWords } from "../../ui/parts.tsx";
-import { boundsOf, isNumber, plainKeys, type Chosen, type Property, type Varied } from "./campaign-form.ts";
+import { boundsOf, COUNT, isNumber, plainKeys, whyNoName, whyNotVaried, type Chosen, type Property, type Varied } from "./campaign-form.ts";
 
 interface Options {
   schema: Property;
@@ -62,14 +62,15 @@ function Plain({ name, property, value, offered, required, onChange }: { name: s
   const usual = property.default === undefined || property.default === null || property.default === "" ? "" : String(property.default), bounds = boundsOf(property);
   const about = `about-${name}`, described = property.description && !offered ? { "aria-describedby": about } : {};
   const take = (event: { currentTarget: HTMLInputElement | HTMLSelectElement }) => onChange(event.currentTarget.value);
+  const refused = name === "name" ? whyNoName(value) : "";
   return (
     <div><label class="field">{FIELDS[name] ?? inWords(name).replace(/^./, (letter) => letter.toUpperCase())}
       {offered
         ? <select value={value} required={required} onChange={take}><option value="">{usual || (required ? t("choose …") : t("the usual one"))}</option>{offered.map((one) => <option key={one}>{one}</option>)}</select>
         : isNumber(property)
           ? <NumberInput {...(property.description ? { describedBy: about } : {})} {...bounds} placeholder={usual} value={value} onText={onChange} />
-          : <input required={required} {...described} {...(name === "name" ? { pattern: "[A-Za-z0-9][A-Za-z0-9_.\\-]*" } : {})} placeholder={usual} autocomplete="off" value={value} onInput={take} />}
-      </label>{property.description && !offered ? <span class="reason" id={about}><English>{property.description}</English></span> : null}
+          : <input required={required} {...described} aria-invalid={refused !== ""} placeholder={usual} autocomplete="off" value={value} onInput={take} />}
+      </label>{refused ? <span class="bad small refused" role="alert">{refused}</span> : null}{property.description && !offered ? <span class="reason" id={about}><English>{property.description}</English></span> : null}
     </div>
   );
 }
@@ -109,10 +110,10 @@ function Vary({ rows, onChange }: { rows: Varied[]; onChange: (rows: Varied[]) =
       <summary>{t("Values that are tried one after the other")}</summary>
       {rows.map((row, at) => (
         <div class="row" key={at}>
-          <label class="field">{t("Name")}<input placeholder="model.vehicle_inertia" autocomplete="off" pattern="(controller|model|plan)\.[^.]+|effect\.[^.]+\.[^.]+" title="controller.NAME, model.NAME, effect.ID.NAME, plan.NAME" value={row.name} onInput={(event) => set(at, { name: event.currentTarget.value })} /></label>
+          <label class="field">{t("Name")}<input placeholder="model.vehicle_inertia" autocomplete="off" aria-invalid={whyNotVaried(row.name) !== ""} title="controller.NAME, model.NAME, effect.ID.NAME, plan.NAME" value={row.name} onInput={(event) => set(at, { name: event.currentTarget.value })} />{whyNotVaried(row.name) ? <span class="bad small refused" role="alert">{whyNotVaried(row.name)}</span> : null}</label>
           <label class="field">{t("from")}<NumberInput value={row.from} onText={(from) => set(at, { from })} /></label>
           <label class="field">{t("to")}<NumberInput value={row.to} onText={(to) => set(at, { to })} /></label>
-          <label class="field">{t("in so many values")}<NumberInput min={2} max={100_000} whole value={row.count} onText={(count) => set(at, { count })} /></label>
+          <label class="field">{t("in so many values")}<NumberInput {...COUNT} value={row.count} onText={(count) => set(at, { count })} /></label>
           <button type="button" class="plain" onClick={() => onChange(rows.filter((_, number) => number !== at))}>{t("Leave out")}</button>
         </div>
       ))}

@@ -5,7 +5,7 @@ import { useEffect, useState } from "preact/hooks";
 import { ask, getTagged, getText } from "../../api/client.ts";
 import type { PlanCheck } from "../../api/types.ts";
 import { to } from "../../addresses.ts";
-import { attempt } from "../../data.ts";
+import { attempt, isMissing } from "../../data.ts";
 import { Conflict, saved, theirsOf, type Theirs } from "../../editor/conflict.tsx";
 import { agreedToDiscard, DraftNotice } from "../../editor/draft-notice.tsx";
 import { TextEditor } from "../../editor/text-editor.tsx";
@@ -56,7 +56,7 @@ export function PlanEditor({ text: given, tag: givenTag, item, builtIn, basedOn 
   return (
     <>
       <DraftNotice of={draft} changed={tag !== givenTag} />
-      {theirs ? <Conflict theirs={theirs} mine={text} keep={{ name: t("Keep mine as the newer version"), do: () => void keep(theirs.tag) }} take={() => void take()} /> : null}
+      {theirs ? <Conflict theirs={theirs} mine={text} keep={{ name: theirs.by === "" ? t("Give {name} anew", { name: theirs.name }) : t("Keep mine as the newer version"), do: () => void keep(theirs.tag) }} take={() => void take()} /> : null}
       <div class="columns even">
         <TextEditor label={t("Text of the plan")} kind="yaml" schema="plan" text={text} onText={setText} checked={checked} keep={action}>
           {builtIn ? <p class="quiet">{t("A built-in plan stays as it is: this becomes a plan of its own.")}</p> : null}
@@ -87,7 +87,11 @@ export function EditPlan({ name, path, item, builtIn, copied, onSaved }: EditOpt
   useEffect(() => {
     const control = new AbortController();
     void attempt(async () => {
-      const now = await getTagged(today, control.signal), text = path === today ? now.text : await getText(path, control.signal);
+      const now = await getTagged(today, control.signal).catch((error: Error) => { // one that was removed: a version is written on from
+        if (path !== today && isMissing({ error })) return { text: "", tag: "" };
+        throw error;
+      });
+      const text = path === today ? now.text : await getText(path, control.signal);
       setStart({ text: copied(text), tag: now.tag, turn: 0 });
     });
     return () => control.abort();

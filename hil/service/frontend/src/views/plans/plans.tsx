@@ -55,8 +55,15 @@ export function Plans(): JSX.Element {
 
 export function PlanView({ name }: { name: string }): JSX.Element {
   const path = `/plans/${encodeURIComponent(name)}`, plan = useData<Plan>(path);
-  if (isMissing(plan)) return <NoneThere kind="plan" name={name} />;
+  if (isMissing(plan)) return <Gone name={name} onSaved={plan.again} />;
   return <Loaded whole of={plan} what={t("plan {name}", { name })}>{(found) => <Found plan={found} onSaved={plan.again} />}</Loaded>;
+}
+
+// Of a plan that was removed the versions stay, and one can be written on from.
+function Gone({ name, onSaved }: { name: string; onSaved: () => void }): JSX.Element {
+  const may = useMay(), [query] = useQuery(), version = Number(query.get("version")) || null, item = itemOf("plan", name, version);
+  if (query.get("write") === "on" && version !== null && may("engineer")) return <><Heading kind={<a href={to.plan(name)}>{name}</a>}>{t("Edit the plan")}</Heading><EditPlan key={item} name={name} path={versionPath("plan", name, version)} item={item} builtIn={false} copied={(text) => text} onSaved={onSaved} /></>;
+  return <NoneThere kind="plan" name={name}><Versions kind="plan" name={name} textPath={null} editPath={`${to.plan(name)}?write=on`} /></NoneThere>;
 }
 
 function Found({ plan, onSaved }: { plan: Plan; onSaved: () => void }): JSX.Element {

@@ -21,6 +21,6 @@ export function BestRun({ of }: { of: Run }): JSX.Element | null {
   if (!best?.run || best.margin == null) return null;
   const values = { run: best.run.id, margin: percent(best.margin, 1), differs: differsOf(of, best.run, best.other_values ?? {}) };
   const why = t("Its smallest margin is {margin}, of {criterion}.", { margin: values.margin, criterion: best.criterion });
-  if (best.run.id === of.id) return <span class="quiet" title={why}>{tn("The only run that passed these criteria: margin {margin}", "The best of {count} runs that passed these criteria: margin {margin}", best.among, values)}</span>;
+  if (best.run.id === of.id) return <span class="quiet" title={why}>{tn("The only run that passed these criteria: margin {margin}", "The best of the {count} runs most like it that passed these criteria: margin {margin}", best.among, values)}</span>;
   return <a href={to.compare(of.id, best.run.id)} title={why}>{values.differs ? t("Compare with the best run ({run}: {differs}; margin {margin})", values) : t("Compare with the best run ({run}, margin {margin})", values)}</a>;
 }

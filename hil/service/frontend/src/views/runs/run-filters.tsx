@@ -26,7 +26,7 @@ export function RunFilters({ query, onChange }: { query: RunsQuery; onChange: (q
   const clear = () => onChange({ ...query, filters: Object.fromEntries(FILTERS.map((name) => [name, ""])) as Record<Filter, string>, text: "", since: "", until: "", criterion: "", above: "", below: "" });
   return (
     <form class="filters small" role="search" aria-label={t("Runs")} onSubmit={(event) => event.preventDefault()}>
-      <Typed label={t("Words")} type="search" hint={t("plan, title, device, person, reason, note")} value={query.text} onChange={(text) => onChange({ ...query, text })} />
+      <Typed label={t("Words")} type="search" hint={t("plan, title, device, person, reason, note, tag")} value={query.text} onChange={(text) => onChange({ ...query, text })} />
       {FILTERS.map((name) => (
         <Choice key={name} label={NAMES[name]} value={query.filters[name]} all={offered[name]} onChange={(value) => onChange({ ...query, filters: { ...query.filters, [name]: value } })} />
       ))}

@@ -24,6 +24,7 @@ import { limitsOf } from "./failed-limits.ts";
 import { Notes } from "./notes.tsx";
 import { isPassed, Outcome } from "./outcome.tsx";
 import { look, rangeOfSegment } from "./places.ts";
+import { titleOf } from "./run-name.ts";
 import { tookOf, valuesOf } from "./run-values.ts";
 import { Unsettled } from "./unsettled.tsx";
 import { WhyItWaits } from "./waiting.tsx";
@@ -53,7 +54,7 @@ function Found({ run, bench }: { run: Run; bench: Bench | null }): JSX.Element {
   const criteria = isLive ? (decided?.run === run.id ? decided.criteria : []) : view.data?.criteria ?? [];
   return (
     <>
-      <Heading kind={tx("Run {run} on {bench}", { run: run.id, bench: <a href={to.bench(run.bench)}>{run.bench}</a> })}>{run.title || run.plan} <Badge kind={verdictOf(run)} /></Heading>
+      <Heading kind={tx("Run {run} on {bench}", { run: run.id, bench: <a href={to.bench(run.bench)}>{run.bench}</a> })}>{titleOf(run)} <Badge kind={verdictOf(run)} /></Heading>
       {isLive && state?.running?.id === run.id ? <Banner state={state} /> : null}
       {WAITING.includes(run.state) ? <WhyItWaits run={run} /> : null}
       {isOver ? <Outcome run={run} view={view.data} /> : null}

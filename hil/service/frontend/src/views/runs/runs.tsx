@@ -12,7 +12,8 @@ import { go, useQuery } from "../../router.ts";
 import { Badge, Heading, linkTo, Moment, Scroll, verdictOf } from "../../ui/parts.tsx";
 import { RunFilters } from "./run-filters.tsx";
 import { impossibleIn, PAGE, queryFrom, sorted, ticked, toAddress, toService, type Order, type RunsQuery } from "./runs-query.ts";
-import { tookOf, valuesOf } from "./run-values.ts";
+import { detailsOf, titleOf } from "./run-name.ts";
+import { tookOf } from "./run-values.ts";
 
 const AGAIN_MS = 10_000;
 
@@ -90,13 +91,13 @@ function Table({ runs, query, chosen, busy, onChoose, onSort }: TableOptions): J
 
 function Row({ found, withValue, chosen, onChoose }: { found: FoundRun; withValue: boolean; chosen: boolean; onChoose: (run: number) => void }): JSX.Element {
   const { run } = found;
-  const values = valuesOf(run);
+  const details = detailsOf(run);
   const reason = run.reason?.split("\n")[0] ?? "";
   return (
     <tr>
       <td><input type="checkbox" aria-label={t("Compare run {run}", { run: run.id })} checked={chosen} onChange={() => onChoose(run.id)} /></td>
       <td class="number"><a href={to.run(run.id)}>{run.id}</a></td>
-      <th scope="row"><a href={to.run(run.id)} class="quietly">{run.title || run.plan}</a>{found.tags?.map((tag) => <span class="tag" key={tag}>{tag}</span>)}{values ? <span class="reason">{values}</span> : null}{reason ? <span class="reason"><English>{reason}</English></span> : null}</th>
+      <th scope="row"><a href={to.run(run.id)} class="quietly">{titleOf(run)}</a>{found.tags?.map((tag) => <span class="tag" key={tag}>{tag}</span>)}{details ? <span class="reason">{details}</span> : null}{reason ? <span class="reason"><English>{reason}</English></span> : null}</th>
       <td><Badge kind={verdictOf(run)} />{run.safe_state === "not_confirmed" ? <span class="bad"> {t("NOT CONFIRMED SAFE")}</span> : null}</td>
       {withValue ? <td class={`number ${found.criterion_verdict === "fail" ? "bad" : ""}`}>{figure(found.value, found.unit)}<span class="reason">{limitText(found.upper, found.lower)}</span></td> : null}
       <td><a href={to.bench(run.bench)}>{run.bench}</a></td>

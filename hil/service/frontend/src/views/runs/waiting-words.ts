@@ -3,7 +3,7 @@
 import type { Bench, Run } from "../../api/types.ts";
 import { moment } from "../../format.ts";
 import { t } from "../../i18n/text.ts";
-import { titleOf } from "../bench-words.ts";
+import { nameOf } from "./run-name.ts";
 
 // A bench as far as this service knows it: null, it has none of this name.
 export interface Around {
@@ -36,7 +36,7 @@ export function whyItWaits(run: Run, { bench, running, queue }: Around): Waiting
 }
 
 function behind(run: Run, running: Run, queue: Run[]): Waiting {
-  const values = { run: running.id, plan: titleOf(running), person: running.requested_by }, before = countBefore(run, queue);
+  const values = { run: running.id, plan: nameOf(running), person: running.requested_by }, before = countBefore(run, queue);
   const why = running.prompt ? t("Run {run} ({plan}, by {person}) is on the bench and waits for an answer.", values)
     : running.expected_end ? t("Run {run} ({plan}, by {person}) is on the bench, until about {end}.", { ...values, end: moment(running.expected_end) })
       : t("Run {run} ({plan}, by {person}) is on the bench.", values);

@@ -14,6 +14,7 @@ import { Heading, Loaded, Section } from "../../ui/parts.tsx";
 import { runsFrom } from "./chosen-runs.ts";
 import { Alternatives, Effects } from "./effects.tsx";
 import { ErrorMap, Gaps } from "./gaps.tsx";
+import { isImproved } from "./improved.ts";
 import { KeepModel } from "./keep-model.tsx";
 import { ChooseRecordings, ChooseRuns, StudyList, StudyPage } from "./study-parts.tsx";
 
@@ -78,7 +79,7 @@ function Found({ data }: { data: Diagnosis }): JSX.Element {
       <Section title={t("Error over noise, before → after")} label="map"><ErrorMap of={data.map} /></Section>
       <Section title={t("Gap, % of the signal")} label="gap"><Gaps of={data.gap} label={t("Gap")} /></Section>
       {hasHoldout ? <Section title={t("Gap on runs that were held out")} label="holdout"><Gaps of={data.holdout_gap} label={t("Gap of held-out runs")} /></Section> : null}
-      <KeepModel study={data.study} file="model.toml" what={t("improved model")} />
+      {isImproved(data) ? <KeepModel study={data.study} file="model.toml" what={t("improved model")} /> : <p class="quiet">{t("Nothing improved: no effect was named, and no gap is smaller than with the model as it is.")}</p>}
     </>
   );
 }

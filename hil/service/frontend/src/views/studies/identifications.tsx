@@ -16,7 +16,7 @@ import { useMay } from "../../session.ts";
 import { Badge, Heading, inWords, Loaded, Scroll, Section } from "../../ui/parts.tsx";
 import { KeepModel } from "./keep-model.tsx";
 import { Chains, nameOfOrder, Orders, type Order } from "./orders.tsx";
-import { ChooseRecordings, ChooseRuns, StudyList, StudyPage } from "./study-parts.tsx";
+import { ChooseRecordings, ChooseRuns, EXCITED, StudyList, StudyPage } from "./study-parts.tsx";
 import { runsFrom } from "./chosen-runs.ts";
 
 export function Identifications(): JSX.Element {
@@ -41,7 +41,7 @@ function Begin(): JSX.Element {
   return (
     <form class="card" onSubmit={(event) => void begin(event)}>
       <h2>{t("Identify a model")}</h2>
-      <ChooseRuns legend={t("Runs with chirps or multisines")} chosen={runs} onChange={setRuns} />
+      <ChooseRuns legend={t("Runs with chirps or multisines")} from={EXCITED} chosen={runs} onChange={setRuns} />
       <ChooseRecordings legend={t("Given recordings with chirps or multisines")} chosen={recordings} onChange={setRecordings} />
       <button type="submit" class="main" disabled={!runs.length && !recordings.length}>{t("Identify")}</button>
     </form>

@@ -13,6 +13,7 @@ import { useMay } from "../../session.ts";
 import { kindInWords } from "../../ui/kinds.ts";
 import { Badge, Facts, FileLink, Heading, Loaded, Moment, Scroll, Section } from "../../ui/parts.tsx";
 import { NoneThere } from "../none-there.tsx";
+import { nameOf } from "../runs/run-name.ts";
 import { useRecordings } from "../recordings/recordings.tsx";
 
 const AGAIN_MS = 2000;
@@ -41,9 +42,13 @@ const RunLinks = ({ runs }: { runs: number[] }): JSX.Element => <span class="lin
 
 const RecordingLinks = ({ recordings }: { recordings: number[] }): JSX.Element => <span class="links">{recordings.map((one) => <a key={one} href={to.recording(one)}>{t("recording {number}", { number: one })}</a>)}</span>;
 
+const RECORDED = "/runs?most=100&state=ended&state=interrupted";
+// Those that a response can be measured from: their plans excite all frequencies, and they went on to their end.
+export const EXCITED = "/runs?most=100&state=ended&verdict=pass&verdict=fail&verdict=done&step=chirp&step=multisine";
+
 // The newest runs with recordings, and those that the address names, to be ticked.
-export function ChooseRuns({ legend, chosen, onChange, without = [] }: { legend: string; chosen: number[]; onChange: (runs: number[]) => void; without?: number[] }): JSX.Element {
-  const all = useData<Run[]>("/runs?most=100&state=ended&state=interrupted", 10_000);
+export function ChooseRuns({ legend, chosen, onChange, without = [], from = RECORDED }: { legend: string; chosen: number[]; onChange: (runs: number[]) => void; without?: number[]; from?: string }): JSX.Element {
+  const all = useData<Run[]>(from, 10_000);
   const recorded = (all.data ?? []).filter((run) => (run.files ?? []).includes("recording.mcap") && !without.includes(run.id));
   const offered = recorded.filter((run, at) => at < MOST_RUNS || chosen.includes(run.id));
   const others = chosen.filter((id) => !offered.some((run) => run.id === id));
@@ -54,8 +59,8 @@ export function ChooseRuns({ legend, chosen, onChange, without = [] }: { legend:
   return (
     <fieldset class="ticks"><legend>{legend}</legend>
       {others.map((id) => tick(id, t("run {run}", { run: id })))}
-      {offered.map((run) => tick(run.id, t("run {run}: {plan}, {bench}", { run: run.id, plan: run.title || run.plan, bench: run.bench })))}
-      {all.data && !offered.length && !others.length ? <p class="quiet">{t("There is no recording yet.")}</p> : null}
+      {offered.map((run) => tick(run.id, t("run {run}: {plan}, {bench}", { run: run.id, plan: nameOf(run), bench: run.bench })))}
+      {all.data && !offered.length && !others.length ? <p class="quiet">{from === EXCITED ? t("No run of a plan with a chirp or a multisine has ended yet.") : t("There is no recording yet.")}</p> : null}
     </fieldset>
   );
 }
