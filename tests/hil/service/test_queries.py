@@ -39,7 +39,7 @@ def test_runs_are_filtered_by_verdict_and_say_when_they_started(service: Served)
     ("path", "where", "fix"),
     [
         ("/runs?verdikt=fail", "query.verdikt", "did you mean 'verdict'?"),
-        ("/runs?bench=sim&a%0Ab=1", "query.a", "known: before, bench, most, state, verdict"),
+        ("/runs?bench=sim&a%0Ab=1", "query.a", "known: before, bench, most, state, step, verdict"),
         ("/benches?name=sim", "query.name", "this address takes none"),
         ("/trends?bench=sim&plan=short&last=3", "query.last", "known: "),
     ],
