@@ -74,12 +74,18 @@ def _off_neighbours(values: Array) -> Array:
 
 
 def even_times(time: Array) -> tuple[Array, float]:
-    """Even times nearest to uneven stamps, and their distance, in s; those of lost samples are there."""
+    """Even times over uneven stamps and their distance, in s: those of a clock where stamps jitter so.
+
+    Samples that were lost have their times as well.
+    """
     steps = np.diff(time)
     usual = float(np.mean(steps[np.abs(steps / np.median(steps) - 1.0) < _LOST]))
     # a stamp that is late makes one step longer and the next one shorter: their sum is right
     place = np.concatenate([[0.0], np.cumsum(np.rint(steps / usual))])
     dt, first = np.polyfit(place, time, 1)
+    if np.max(np.abs(first + dt * place - time)) > _HALF * dt:  # no clock: steps of several lengths
+        place, first = np.array([round((time[-1] - time[0]) / usual)], dtype=float), float(time[0])
+        dt = (time[-1] - first) / place[-1]
     return np.asarray(first + dt * np.arange(round(place[-1]) + 1)), float(dt)
 
 

@@ -50,6 +50,16 @@ def test_times_over_stamps_that_jitter_or_lack_some_are_those_of_the_clock():
     assert dt == pytest.approx(1e-3, rel=1e-6)
 
 
+def test_steps_of_several_lengths_are_no_clock_and_the_grid_keeps_to_the_stamps():
+    steps = np.random.default_rng(2).choice([2.7e-3, 1e-2], 3_000, p=[0.7, 0.3])
+    time = np.cumsum(steps)
+    grid, dt = even_times(time)
+    assert (grid[0], grid[-1]) == pytest.approx((time[0], time[-1]))
+    assert dt == pytest.approx(2.7e-3, rel=0.01)
+    recording = _recorded(_speed(time), time)
+    assert at_true_times(recording) is recording
+
+
 def test_a_torque_held_between_uneven_stamps_keeps_its_impulse():
     stamps = np.array([0.0, 0.0103, 0.0198, 0.0301, 0.04])
     torque = np.array([1.0, 3.0, -2.0, 5.0, 7.0])

@@ -51,7 +51,7 @@ def test_a_plan_is_foreseen_queued_watched_stopped_and_found(page: playwright.Pa
     expect(region(page, "Criteria")).to_contain_text("s.peak_shaft_torque")
     page.get_by_role("button", name="Emergency stop sim").click()
     there.over(run)
-    expect(page.get_by_text("error", exact=True)).to_be_visible()
+    expect(page.get_by_text("stopped", exact=True)).to_be_visible()
     expect(region(page, "Segments and events")).to_contain_text("safe stateconfirmed")
     expect(page.locator(".facts")).to_contain_text("safe stateconfirmed")
     with page.expect_popup() as report:

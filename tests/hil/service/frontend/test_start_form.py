@@ -75,18 +75,6 @@ def test_values_of_an_address_are_changed_in_it_on_the_page_of_a_plan(
     expect(page).to_have_url(f"{there.url}/plans/short?bench=sim&value.torque_nm=20.5")
 
 
-def test_a_run_is_queued_when_its_forecast_is_known(page: playwright.Page, there: Served) -> None:
-    waiting: list[playwright.Route] = []
-    page.route("**/api/v1/forecasts", lambda route: waiting.append(route))
-    to(page, there, "plans/short?bench=sim")
-    queue = page.get_by_role("button", name="Queue the run")
-    with page.expect_request("**/api/v1/forecasts"):
-        expect(page.locator(".forecast")).to_contain_text("Largest torque asked for")
-    expect(queue).to_be_disabled()
-    waiting[0].continue_()
-    expect(queue).to_be_enabled(timeout=180_000)
-
-
 @pytest.mark.parametrize(
     ("address", "said", "link"),
     [

@@ -24,11 +24,10 @@ interface Foreseen {
   forecast: Forecast | null;
   error: string;
   wrong?: string; // why a typed value is not taken
-  refused: boolean; // the run would end with an error, or it exceeds the bench
-  known: boolean; // whether an answer has come
+  refused: boolean; // the service would not queue it either, or it exceeds the bench
 }
 
-const NOTHING: Foreseen = { forecast: null, error: "", refused: false, known: false };
+const NOTHING: Foreseen = { forecast: null, error: "", refused: false };
 
 // `wrong`: why a typed value is not taken; nothing is asked then.
 export function useForecast(wanted: Wanted | null, wrong = ""): Foreseen {
@@ -41,12 +40,12 @@ export function useForecast(wanted: Wanted | null, wrong = ""): Foreseen {
     const predict = async () => {
       try {
         const forecast = await ask<Forecast>("POST", "/forecasts", wanted, control.signal);
-        setFound({ forecast, error: "", refused: !forecast.fits, known: true });
+        setFound({ forecast, error: "", refused: !forecast.fits });
       } catch (error) {
         if (control.signal.aborted) return;
         const { message } = error as Error, fix = error instanceof Refused ? error.fix : "";
         // what cannot be predicted may still be run
-        setFound({ forecast: null, error: fix ? `${message} (${fix})` : message, refused: !(error instanceof Refused && (error.status === 503 || error.status === 0)), known: true });
+        setFound({ forecast: null, error: fix ? `${message} (${fix})` : message, refused: !(error instanceof Refused && (error.status === 503 || error.status === 0)) });
       }
     };
     const timer = setTimeout(() => void predict(), WAIT_MS);
@@ -55,7 +54,7 @@ export function useForecast(wanted: Wanted | null, wrong = ""): Foreseen {
   return found;
 }
 
-// A run is queued when it is known: one that does not fit its bench would only end with an error.
+// Nobody has to wait for it: a run is queued while it is computed, and a run that exceeds its bench is refused there.
 // With criteria it says what each is predicted to be, else how many fail.
 export function ForecastShown({ of: { forecast, error, wrong }, criteria = false }: { of: Foreseen; criteria?: boolean }): JSX.Element {
   if (wrong) return <p class="bad">{wrong}</p>;

@@ -73,7 +73,7 @@ export function StartPlan({ bench, plan }: { bench?: string; plan?: string }): J
       {benches && !where && start.bench ? <p class="bad" role="alert">{tx("There is no bench '{bench}': <a>all benches</a>", { bench: start.bench, a: linkTo(to.list("benches")) })}</p> : null}
       {plan || !found ? null : <p class="quiet"><a href={to.plan(found.name)}>{found.name}</a>{found.description ? `: ${found.description}` : ""}</p>}
       {found ? <VariableFields plan={found} texts={texts} onChange={type} /> : null}
-      <button type="submit" class="main" disabled={!wanted || !forecast.known || forecast.refused}>{t("Queue the run")}</button>
+      <button type="submit" class="main" disabled={!wanted || forecast.refused}>{t("Queue the run")}</button>
       <div class="forecast" aria-live="polite">
         {torques ? <p>{t("Largest torque asked for: {torques}.", { torques })}</p> : null}
         {found ? <ForecastShown of={forecast} /> : null}
