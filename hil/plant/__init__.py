@@ -16,14 +16,7 @@ from hil.plant._linear import LinearSystem, linear_system, linear_system_of, sys
 from hil.plant._motor_limits import refuse_motor_limits
 from hil.plant._packed_sets import begins_of, turns
 from hil.plant._regulated import Turning, followed, given_outputs, stands, turning_of
-from hil.plant._replay import (
-    Start,
-    gear_ratio_of,
-    load_of,
-    replay,
-    replayed,
-    simulate,
-)
+from hil.plant._replay import Start, gear_ratio_of, load_of, replay, replayed, simulate
 from hil.plant._stability import LONGEST_STEP_S, is_stable, refuse_diverged_state, refuse_too_stiff
 from hil.plant._stamps import at_true_times, even_times, held_over, jittered
 from hil.plant.sensors import DELAY as SENSOR_DELAY

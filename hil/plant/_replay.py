@@ -128,7 +128,7 @@ def replay(model: Model, recording: Recording) -> Recording:
     refuse_too_stiff(model)
     stamps, recording = recording.time_s, at_true_times(recording)
     time = recording.time_s
-    dt = float(np.median(np.diff(time)))
+    dt = recording.sample_time_s
     torque = recording[INPUT]
     load = load_of(model, recording)
     notes = [jittered(dt)] if time is not stamps else []

@@ -60,15 +60,22 @@ def standard_errors_off(
         if id not in SAME_NUMBERS or label not in named:
             continue
         entry = entries[named.index(label)]
+        if not is_itself(entry, label):
+            continue
         for name, error in (entry.get("standard_error") or {}).items():
             true = values.get(name)
-            if isinstance(true, str) or true is None or not error or entry["id"] != id:
+            if isinstance(true, str) or true is None or not error:
                 continue
             miss = float(entry["parameters"][name]) - float(true)
             if name == "phase_rad":
                 miss = (miss + math.pi) % (2.0 * math.pi) - math.pi
             off[f"{label}.{name}"] = miss / float(error)
     return off
+
+
+def is_itself(entry: Mapping[str, Any], label: str) -> bool:
+    """Whether an effect is given by that name; by another one of its class it has other numbers."""
+    return label_of(str(entry["id"]), entry.get("parameters", {})) == label
 
 
 def label_of(id: str, values: Mapping[str, Any]) -> str:

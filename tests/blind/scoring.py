@@ -10,7 +10,7 @@ from typing import Any
 from hil.core.channels import OUTPUTS
 from tests.blind.casefiles import Answer
 from tests.blind.diagnosing import Reply
-from tests.blind.fairness import judged_gaps, label_of, standard_errors_off
+from tests.blind.fairness import is_itself, judged_gaps, label_of, standard_errors_off
 from tests.blind.families import FAMILIES
 from tests.blind.later_families import LATER_FAMILIES
 from tests.blind.specs import Spec
@@ -159,9 +159,10 @@ def _parameter_errors(
         label = label_of(id, values)
         if label not in named:
             continue  # right by saying nothing, or as one of two rivals
-        found = entries[named.index(label)]["parameters"]
-        if not {*found} & {*values}:
-            continue  # by another name of its class, which has other numbers
+        entry = entries[named.index(label)]
+        if not is_itself(entry, label):
+            continue
+        found = entry["parameters"]
         for name, error in errors_of(id, values, found).items():
             errors[f"{label}.{name}"] = error
     return errors

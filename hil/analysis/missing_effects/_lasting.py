@@ -48,7 +48,7 @@ def constancy(problem: Problem, at: Linearised, index: int, cost: float) -> floa
             sizes[place] = size / abs(one.slope(0.0))
             does[place] = sizes[place] * np.linalg.norm(at.slopes[:, place])
     least = 1.0
-    for place in np.flatnonzero((does > HALF * np.max(does, initial=0.0)) & (does > 0.0)).tolist():
+    for place in np.flatnonzero(does > HALF * np.max(does, initial=0.0)).tolist():
         gain, moved = _change(problem, at, place)
         if gain > cost:
             least = min(least, 1.0 - 0.5 * abs(moved) / sizes[place])

@@ -51,9 +51,11 @@ def gains_instead(done: Candidates, best: Candidate) -> dict[str, tuple[str, ...
 
     A gear ratio and a gain of one of two speeds show the same: only the prior knows that teeth were counted.
     """
+    if best.names:
+        return {}
     hypothesis, found = best.point.hypothesis, {}
     moved = [one for one in done.problem.coordinates(hypothesis) if np.log1p(one.away(0.0) ** 2) > ALIKE]
-    for name in [one.name for one in moved if not best.names]:
+    for name in [one.name for one in moved]:
         back = _with_number(hypothesis, name, done.problem.model.parameters[name])
         tried = [done.fitted(back.with_term(use), best, held=frozenset({name})) for use in _gains(done, back)]
         alike = [one for one in tried if done.score(one) > done.score(best) - ALIKE]

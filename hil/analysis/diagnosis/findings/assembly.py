@@ -77,9 +77,7 @@ def diagnosis_of(
     doubt = unseen.words(verdict)
     start, updates = _numbers(found, fitted)
     stated = effects if verdict == "named" else ()
-    small_too = {
-        name for f, one in zip(found.effects, named, strict=True) if one in small for name in f.alike
-    }
+    small_too = {name for one in small for name in one.alike}
     return Diagnosis(
         verdict=verdict,
         base=base,
