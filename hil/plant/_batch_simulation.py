@@ -63,12 +63,13 @@ def simulate_many(
     angles: Array | None = None,
     load_nm: Array | None = None,
     functions: Mapping[str, TransferFunction] | None = None,
+    before_nm: float | None = None,
 ) -> Array:
     """Channels of many packed models for one torque request, each the mean of `block` samples.
 
     Args:
         parameters: sets x slots, from `pack`.
-        torque_nm: shape (n,), held for `dt` seconds each; the first value has acted since long before.
+        torque_nm: shape (n,), held for `dt` seconds each.
         starts: sets x 3: motor speed, wheel speed (rad/s), shaft torque (N m); or sets x 5, where three
             inertias begin in mid-motion: vehicle less wheel speed (rad/s), and the tyre's twist beyond what
             the shaft torque holds (rad).
@@ -77,7 +78,9 @@ def simulate_many(
             simulated ones.
         load_nm: shape (n,), brakes the wheels (the load where there is no wheel), straight from sample to
             sample; none when left out.
-        functions: of a transfer-function model; only torque path and sensors of `parameters` count then.
+        functions: of a transfer-function model; only torque path and sensors of `parameters` count then, and
+            there was no torque before.
+        before_nm: has acted since long before; the first value of `torque_nm` when left out.
 
     Returns:
         sets x (n // block) x 3, in the order of `CHANNELS`. A diverged set shows as NaN or huge numbers.
@@ -97,7 +100,8 @@ def simulate_many(
         transition[index], held[index], rising[index] = matrices[0], matrices[2], matrices[3]
         torque[index, : 2 * used] = matrices[1].reshape(-1, X.LINEAR_STATES)
     out = np.empty((sets, len(torque_nm) // block, len(CHANNELS)))
-    torque_nm = np.ascontiguousarray(torque_nm, dtype=float)
+    before = torque_nm[0] if before_nm is None else before_nm
+    torque_nm = np.concatenate([[before], torque_nm])
     parameters, sensors = np.ascontiguousarray(parameters), np.ascontiguousarray(sensors, dtype=float)
     angles = np.zeros((0, 2)) if angles is None else np.ascontiguousarray(angles, dtype=float)
     load_nm = None if load_nm is None else np.ascontiguousarray(load_nm, dtype=float)
@@ -141,8 +145,8 @@ def _shown(acting, ends, dt, whole, p, out):  # type: ignore[no-untyped-def]
     """The delayed torque at each sample's instant: what a rigid axle's shaft torque shows of it."""
     limit = L.steepest(p)
     reach = (1.0 + whole - p[P.TORQUE_DELAY] / dt) * limit * dt
-    for k in range(acting.shape[0]):
-        now = max(k - whole - 1, 0)
+    for k in range(out.shape[0]):
+        now = max(k - whole, 0)
         out[k] = acting[now]
         if limit < math.inf:
             before = ends[max(now - 1, 0)]
@@ -178,9 +182,9 @@ def _moved(x, sub, old, new, column, transition):  # type: ignore[no-untyped-def
 @compiled
 def _run_linear(drive, whole, p, x, substeps, column, transition, fine):  # type: ignore[no-untyped-def]
     acting, shown = drive
-    for k in range(acting.shape[0]):
-        new = acting[max(k - whole, 0)]
-        old = acting[max(k - whole - 1, 0)]
+    for k in range(shown.shape[0]):
+        new = acting[max(k + 1 - whole, 0)]
+        old = acting[max(k - whole, 0)]
         fine[k, SPEED] = relative_speed(x)
         fine[k, WHEEL] = x[X.WHEEL_SPEED]
         fine[k, SHAFT] = F.shaft_torque(x, F.NONE, 0.0, p, shown[k], False)
@@ -219,12 +223,12 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, l
     f = F.forces(m, chain, memories, p, acting)
     has_wheel = chain.kind == P.THREE_INERTIA
     brakes, rises, foreseen = 0.0, 0.0, 0.0
-    for k in range(asked.shape[0]):
+    for k in range(shown.shape[0]):
         if load is not None:
             brakes = load[k]
             rises = (load[min(k + 1, load.shape[0] - 1)] - brakes) / substeps
-        new = asked[max(k - whole, 0)]
-        old = asked[max(k - whole - 1, 0)]
+        new = asked[max(k + 1 - whole, 0)]
+        old = asked[max(k - whole, 0)]
         fine[k, SPEED] = relative_speed(x)
         fine[k, WHEEL] = x[X.WHEEL_SPEED]
         fine[k, SHAFT] = F.shaft_torque(x, f, brakes, p, shown[k], acting.dry)
@@ -286,9 +290,9 @@ def _run_by_angle(drive, whole, p, first, h, substeps, matrices, angles, fine): 
     chain, acting = chain_of(p), acting_of(p)
     at = F.first_angles(angles, x, p)
     f = F.forces(motion_of(x, chain, memories, at[F.WHEEL], at[F.ROTOR], p), chain, memories, p, acting)
-    for k in range(asked.shape[0]):
-        new = asked[max(k - whole, 0)]
-        old = asked[max(k - whole - 1, 0)]
+    for k in range(shown.shape[0]):
+        new = asked[max(k + 1 - whole, 0)]
+        old = asked[max(k - whole, 0)]
         fine[k, SPEED] = relative_speed(x)
         fine[k, WHEEL] = x[X.WHEEL_SPEED]
         fine[k, SHAFT] = F.shaft_torque(x, f, 0.0, p, shown[k], False)
@@ -304,9 +308,9 @@ def _run_by_angle(drive, whole, p, first, h, substeps, matrices, angles, fine): 
 
 @compiled
 def _run(torque, dt, vector, start, substeps, varies, matrices, angles, load, fine):  # type: ignore[no-untyped-def]
-    """One model over the whole recording into `fine` (n x 3)."""
+    """One model over a recording into `fine` (n x 3); `torque` (n + 1) begins with what acted before."""
     p = as_tuple(vector)
-    acting, ends, shown = np.empty(torque.shape[0]), np.empty(torque.shape[0]), np.empty(torque.shape[0])
+    acting, ends, shown = np.empty(torque.shape[0]), np.empty(torque.shape[0]), np.empty(fine.shape[0])
     over_samples(torque, dt, p, acting, ends)
     first = _first_state(p, start, acting[0])
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
@@ -335,7 +339,7 @@ def _alike(rows, s):  # type: ignore[no-untyped-def]
 @compiled_without_lock
 def _run_all(torque, dt, parameters, starts, sensors, block, substeps, varies, matrices, angles, load, out):  # type: ignore[no-untyped-def]
     transition, column, held, rising = matrices
-    fine = np.empty((torque.shape[0], 3))
+    fine = np.empty((torque.shape[0] - 1, 3))
     for s in range(parameters.shape[0]):
         # sets that differ in their sensors alone move alike
         if s == 0 or not (_alike(parameters, s) and _alike(starts, s)):

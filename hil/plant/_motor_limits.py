@@ -7,6 +7,11 @@ from hil.core.errors import BadInputError
 from hil.core.model import Model
 
 
+def is_limited(model: Model) -> bool:
+    """Whether an effect limits a model's torque by its speed."""
+    return any(EFFECTS[use.id].law.limit is not None for use in model.effects)
+
+
 def refuse_motor_limits(model: Model, what: str) -> None:
     """Refuse a model whose torque is limited by its speed where the acting torque is computed first.
 

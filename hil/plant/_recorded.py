@@ -66,7 +66,7 @@ def settled(
         errors: (5,), standard errors of that.
         unrecorded: (5,), what a torque that was not recorded may have added before the first sample.
         measured: n x 3, NaN where a channel was not recorded.
-        show: gives the outputs (n x 3) from a start.
+        show: gives the outputs (starts x n x 3) from starts (starts x 5).
     """
     unsure = np.hypot(errors, unrecorded)
     there = np.isfinite(measured[0])
@@ -77,23 +77,16 @@ def settled(
     noise = np.maximum(noise, _DIGITS * np.where(size > 0.0, size, 1.0))
     steps = np.append(_STEP * np.where(size > 0.0, size, 1.0), _SMALL * unsure[3:])
 
-    known: dict[bytes, Array] = {}  # a later search begins where an earlier one did
-
-    def away(start: Array) -> Array:
-        key = start.tobytes()
-        if key not in known:
-            known[key] = errors_of(start)
-        return known[key]
-
-    def errors_of(start: Array) -> Array:
-        error = np.where(there, measured - show(start), 0.0) / noise
+    def away(starts: Array) -> Array:
+        error = np.where(there, measured - show(starts), 0.0) / noise
         return np.asarray(np.clip(np.nan_to_num(error, nan=_FAR), -_FAR, _FAR), dtype=float)
 
     unread = np.append(np.zeros(3), unsure[3:])
     begins = [first + share * unread for share in (_AHEAD if unread.any() else _AHEAD[:1])]
     ends = [_least(first, unsure, steps, away, np.where(there, 1.0, 0.0), one) for one in begins]
-    start = min(ends, key=lambda one: float(np.sum(away(one) ** 2)))
-    misfit = np.maximum(np.mean(away(start) ** 2, axis=0), 1.0)
+    squares = np.mean(away(np.stack(ends)) ** 2, axis=1)
+    nearest = int(np.argmin(np.sum(squares, axis=1)))
+    start, misfit = ends[nearest], np.maximum(squares[nearest], 1.0)
     counts = 1.0 / (1.0 + (misfit - 1.0) * len(measured) / _VALUES)
     unsure = np.hypot(errors, unrecorded / np.max(misfit))  # of a wrong model it would take up the misfit
     return _least(first, unsure, steps, away, np.where(there, counts, 0.0), start if unread.any() else first)
@@ -111,23 +104,23 @@ def _least(
 
     Args:
         unsure: how far `first` may be off.
-        away: errors (n x 3) of a start in noises.
+        away: errors (starts x n x 3) of starts in noises.
         counts: (3,), what an error of each channel counts for.
     """
     free = np.flatnonzero(unsure > 0.0)
 
-    def rows(start: Array) -> Array:
-        whole = (away(start) * np.sqrt(counts)).ravel()
-        return np.concatenate([whole, ((start - first) / np.maximum(unsure, 1e-300))[free]])
+    def rows(starts: Array) -> Array:
+        whole = (away(starts) * np.sqrt(counts)).reshape(len(starts), -1)
+        return np.concatenate([whole, ((starts - first) / np.maximum(unsure, 1e-300))[:, free]], axis=1)
 
     start = start.astype(float)
-    left = rows(start)
+    left = rows(start[None])[0]
     for _ in range(_ROUNDS):
-        slopes = np.stack([(rows(start + one) - left) / one.sum() for one in np.diag(steps)[free]])
+        slopes = (rows(start + np.diag(steps)[free]) - left) / steps[free, None]
         step = np.zeros(len(start))
         step[free] = -np.linalg.lstsq(slopes.T, left, rcond=None)[0]
         for _ in range(_HALVED):
-            after = rows(start + step)
+            after = rows((start + step)[None])[0]
             if after @ after < left @ left:
                 break
             step *= 0.5  # contact comes and goes on the way

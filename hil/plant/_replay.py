@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,10 +17,11 @@ from hil.core.recording import Recording
 from hil.plant import _angles, _recorded, kernel, slots
 from hil.plant._batch_simulation import simulate_many
 from hil.plant._functions import respond_many
+from hil.plant._motor_limits import is_limited
 from hil.plant._regulated import turning_load
 from hil.plant._stability import LONGEST_STEP_S, refuse_divergence, refuse_too_stiff
 from hil.plant._stamps import UNEVEN_SHARE, at_true_times, even_times, held_over, jittered
-from hil.plant.sensors import GAIN, OFFSET, STEP, measured, sensor_of
+from hil.plant.sensors import GAIN, OFFSET, measured, sensor_of
 from hil.plant.sides import LUMPED, form_of
 
 Array = npt.NDArray[np.float64]
@@ -161,20 +162,30 @@ def _along(
     ratio = gear_ratio_of(model)
     if not np.isfinite(recorded[0, :2]).any() or ratio is None or form_of(model)[len(LUMPED) :]:
         return {}
-    begin = np.array([[
-        start.motor_speed_rad_s, start.wheel_speed_rad_s, start.shaft_torque_nm,
-        start.vehicle_ahead_rad_s, start.tyre_twist_rad,
-    ]])  # fmt: skip
-    sensors = np.stack([sensor_of(model, name) for name in OUTPUTS])[None]
     angles = _angles.turned(recorded, dt, ratio, start.wheel_angle_rad)
-    rests = start.motor_torque_nm is not None  # a sample before the first shows that no torque has acted
-    if rests:
-        torque = np.concatenate([[start.motor_torque_nm], torque])
-        angles = np.concatenate([angles[:1], angles])
-        load = None if load is None else np.concatenate([load[:1], load])
-    shown = simulate_many(slots.pack(model)[None], torque, dt, begin, sensors, angles=angles, load_nm=load)
-    shown = shown[:, int(rests) :]
-    return {name: np.ascontiguousarray(shown[0, :, column]) for column, name in enumerate(OUTPUTS)}
+    shown = _shown_from([start], model, torque, dt, load, angles)[0]
+    return {name: np.ascontiguousarray(shown[:, column]) for column, name in enumerate(OUTPUTS)}
+
+
+def _shown_from(
+    starts: Sequence[Start], model: Model, torque: Array, dt: float, load: Array | None, angles: Array
+) -> Array:
+    """Outputs of a model from several starts, which have the same torque before: starts x n x 3.
+
+    By the equations for many models at once, but for those of a model that these do not have.
+    """
+    if form_of(model)[len(LUMPED) :] or is_limited(model):
+        each = [simulate(model, torque, dt, start, load_nm=load) for start in starts]
+        return np.stack([np.column_stack([shown[name] for name in OUTPUTS]) for shown in each])
+    begins = np.array([
+        (one.motor_speed_rad_s, one.wheel_speed_rad_s, one.shaft_torque_nm,
+         one.vehicle_ahead_rad_s, one.tyre_twist_rad)
+        for one in starts
+    ])  # fmt: skip
+    sensors = np.stack([sensor_of(model, name) for name in OUTPUTS])
+    sets = [np.repeat(one[None], len(starts), axis=0) for one in (slots.pack(model), sensors)]
+    before, functions = starts[0].motor_torque_nm, model.transfer_functions
+    return simulate_many(sets[0], torque, dt, begins, sets[1], 1, angles, load, functions, before)
 
 
 def replayed(
@@ -279,18 +290,20 @@ def settled_start(
     unread = np.zeros(2) if stands else _behind_a_tyre(model, torque, measured)
     read, errors = np.append(read, np.zeros(2)), np.append(errors, unread)
 
+    load = None if load_nm is None else load_nm[:count]
+    angles = np.zeros((0, 2))
+    if ratio is not None and np.isfinite(measured[0, :2]).any():
+        angles = _angles.turned(measured, dt, ratio, wheel_angle_rad)
+
     def from_states(at: Array) -> Start:
         motor, wheel, shaft, ahead, twist = at.tolist()
         return Start(motor, wheel, shaft, 0.0 if rests else None, wheel_angle_rad, ahead, twist)
 
-    def show(at: Array) -> Array:
-        load = None if load_nm is None else load_nm[:count]
-        channels = simulate(model, torque, dt, from_states(at), load_nm=load)
-        shown = np.column_stack([channels.get(name, np.full(count, np.nan)) for name in OUTPUTS])
-        return _angles.as_read(shown, of_angle, dt)
+    def show(states: Array) -> Array:
+        shown = _shown_from([from_states(at) for at in states], model, torque, dt, load, angles)
+        return np.stack([_angles.as_read(one, of_angle, dt) for one in shown])
 
-    shows = _by_superposition(show, read) if _is_linear(model) else show
-    return from_states(_recorded.settled(read, errors, _unrecorded(model, torque, dt), measured, shows))
+    return from_states(_recorded.settled(read, errors, _unrecorded(model, torque, dt), measured, show))
 
 
 def _behind_a_tyre(model: Model, torque_nm: Array, measured: Array) -> Array:
@@ -303,23 +316,6 @@ def _behind_a_tyre(model: Model, torque_nm: Array, measured: Array) -> Array:
     shaft = measured[:, 2] if np.isfinite(measured[0, 2]) else torque_nm * chain.gear_ratio
     holds = max(chain.tyre_damping, math.sqrt(chain.tyre_stiffness * chain.wheel_inertia))
     return float(np.max(np.abs(shaft))) / np.array([holds, chain.tyre_stiffness])
-
-
-def _is_linear(model: Model) -> bool:
-    """Whether outputs of a mechanical model go straight with its start."""
-    if model.kind == "transfer_function" or form_of(model)[len(LUMPED) :]:
-        return False
-    forces = slots.pack(model)[slots.CHAIN :] != slots.pack_nothing()[slots.CHAIN :]
-    rounded = any(sensor_of(model, name)[STEP] > 0.0 for name in OUTPUTS)
-    return not (forces.any() or rounded)
-
-
-def _by_superposition(show: Callable[[Array], Array], first: Array) -> Callable[[Array], Array]:
-    """What a linear model shows from any start, by what it shows from `first` and from one beside it each."""
-    plain = show(first)
-    sizes = np.maximum(np.abs(first), 1.0)
-    slopes = np.stack([(show(first + one) - plain) / one.sum() for one in np.diag(sizes)])
-    return lambda at: np.asarray(plain + np.tensordot(at - first, slopes, axes=1))
 
 
 def _unrecorded(model: Model, torque_nm: Array, dt: float) -> Array:

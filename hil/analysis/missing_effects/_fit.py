@@ -25,7 +25,8 @@ Array = npt.NDArray[np.float64]
 _START_ROUNDS = 3
 _DAMPING = 1e-3  # of the normal equations' diagonal, at first
 _SETTLED = 1e-5  # of the cost: a step that brings less is the last one
-_ENOUGH = 3e-4  # the same in a round whose weights are not the last ones
+ENOUGH = 3e-4
+"""The same in a round whose weights are not the last ones."""
 _SMALLEST = 1e-6  # step of a coordinate
 _FAILED = 3  # steps in a row, after which slopes are taken anew
 _ABRUPT = (30.0, 1.0)  # differences where contact comes and goes: over small ones the misfit jumps
@@ -136,9 +137,7 @@ def fit(
     if not coordinates:
         return with_better_starts(problem, point)
     round_ = _Round(problem, hypothesis, point.starts, coordinates)
-    found = least_squares(
-        round_, *bounds_of(coordinates, 1.0), evaluations, _differences(hypothesis), _ENOUGH
-    )
+    found = least_squares(round_, *bounds_of(coordinates, 1.0), evaluations, _differences(hypothesis), ENOUGH)
     hypothesis = hypothesis.moved(coordinates, found)
     return point_at(problem, hypothesis, _better_starts(problem, hypothesis, point.starts, round_.directions))
 
@@ -235,7 +234,7 @@ class _Round:
         self.problem, self.hypothesis = problem, hypothesis
         self.states, self.coordinates = states, coordinates
         self.directions = _directions(problem, hypothesis, states)
-        self.bases = [basis for _, _, basis in self.directions]
+        self.bases = [basis for _, basis in self.directions]
 
     def residual(self, u: Array) -> Array:
         packed = [self.hypothesis.moved(self.coordinates, u).packed()]
@@ -251,7 +250,8 @@ class _Round:
         slopes = self.problem.derivatives(self.hypothesis, self.states, self.coordinates, u, wider)
         parts = self.problem.each(lambda index: without(self.bases[index], slopes[index]))
         prior = self.problem.prior_slopes(self.coordinates, u)
-        return np.concatenate([*parts, prior.reshape(len(self.coordinates), len(self.coordinates))])
+        columns = prior.reshape(len(self.coordinates), len(self.coordinates)).T  # in memory as the parts are
+        return np.concatenate([*parts, columns])
 
 
 def without(basis: Array, values: Array) -> Array:
@@ -263,7 +263,7 @@ def without(basis: Array, values: Array) -> Array:
 
 def _directions(
     problem: Problem, hypothesis: Hypothesis, states: Sequence[Array]
-) -> list[tuple[Array, Array, Array]]:
+) -> list[tuple[Array, Array]]:
     """In which errors change with each recording's start (`Problem.start_basis`)."""
     return problem.each(lambda index: problem.start_basis(index, hypothesis, states[index]))
 
@@ -272,7 +272,7 @@ def _better_starts(
     problem: Problem,
     hypothesis: Hypothesis,
     states: Sequence[Array],
-    directions: Sequence[tuple[Array, Array, Array]],
+    directions: Sequence[tuple[Array, Array]],
 ) -> list[Array]:
     """Starts that suit the data best, to first order, by the errors' change along their directions."""
     packed = [hypothesis.packed()]
@@ -282,9 +282,9 @@ def _better_starts(
         return np.asarray(problem.weighed(index, problem.series[index].measured - shown)[0])
 
     def better(index: int) -> Array:
-        change, sizes, _ = directions[index]
+        moves, basis = directions[index]
         error = errors(index, states[index])
-        moved = states[index] + sizes * np.linalg.lstsq(change, error, rcond=1e-7)[0]
+        moved = states[index] + moves @ (basis.T @ error)
         again = errors(index, moved)
         return moved if again @ again <= error @ error else states[index]
 

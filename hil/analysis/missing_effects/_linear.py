@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.missing_effects._fit import ROUNDS, bounds_of, least_squares
+from hil.analysis.missing_effects._fit import ENOUGH, ROUNDS, bounds_of, least_squares
 from hil.analysis.missing_effects._hypothesis import Coordinate, Hypothesis
 from hil.analysis.missing_effects._odds import ALIKE
 from hil.analysis.missing_effects._problem import Problem
@@ -114,7 +114,7 @@ class Responses:
             descent = _Descent(self, hypothesis, prior=prior)
             hypothesis = hypothesis.moved(
                 descent.coordinates,
-                least_squares(descent, *bounds_of(descent.coordinates), _EVALUATIONS),
+                least_squares(descent, *bounds_of(descent.coordinates), _EVALUATIONS, settled=ENOUGH),
             )
             there = self.log_likelihood(hypothesis)
             if there <= reached + 0.1:

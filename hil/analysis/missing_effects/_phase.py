@@ -73,7 +73,7 @@ class _Walk:
         self.one = problem.series[index]
         slots, sensor = point.hypothesis.packed()
         self.packed = slots[None], problem.sensors(index, [sensor])
-        self.basis = problem.start_basis(index, point.hypothesis, point.starts[index])[2]
+        self.basis = problem.start_basis(index, point.hypothesis, point.starts[index])[1]
 
     def likelier(self, first: Array, other: Array) -> Array:
         """The first angles, n x 2, unless others are likelier."""

@@ -213,8 +213,11 @@ class Problem:
         one = self.series[index]
         return self.spectrum.by_octave(rows, one.has, len(one.measured), one.rate_hz)
 
-    def start_basis(self, index: int, hypothesis: Hypothesis, start: Array) -> tuple[Array, Array, Array]:
-        """Change of weighed errors with a recording's start (numbers x states), sizes, and its basis."""
+    def start_basis(self, index: int, hypothesis: Hypothesis, start: Array) -> tuple[Array, Array]:
+        """Moves of a recording's start (states x k) that take an orthonormal basis off weighed errors.
+
+        The basis (numbers x k) holds all that a start can change of them.
+        """
         one = self.series[index]
         speed = max(float(np.nanmax(np.abs(one.samples[:, :2]))) if one.has[:2].any() else 1.0, 1e-6)
         torque = max(float(np.max(np.abs(one.torque))), 1e-9)
@@ -223,8 +226,9 @@ class Problem:
         starts = np.concatenate([start[None], start + np.diag(sizes)])
         shown = self.simulated(index, [hypothesis.packed()] * (STATES + 1), starts)
         change = self._changes(index, shown[1:] - shown[0])
-        left, values, _ = np.linalg.svd(change.T, full_matrices=False)
-        return change.T, sizes, left[:, values > _RANK * max(values[0], 1e-300)]
+        basis, values, axes = np.linalg.svd(change.T, full_matrices=False)
+        rank = np.count_nonzero(values > _RANK * max(values[0], 1e-300))
+        return sizes[:, None] * (axes[:rank] / values[:rank, None]).T, basis[:, :rank]
 
     def _changes(self, index: int, values: Array) -> Array:
         """As `weighed`; sets that change nothing cost nothing."""
