@@ -13,7 +13,6 @@ from hil.plant._angles import (
 )
 from hil.plant._batch_simulation import ideal_sensors, simulate_many
 from hil.plant._linear import LinearSystem, linear_system, linear_system_of, system
-from hil.plant._motor_limits import refuse_motor_limits
 from hil.plant._packed_sets import begins_of, turns
 from hil.plant._regulated import Turning, followed, given_outputs, stands, turning_of
 from hil.plant._replay import Start, gear_ratio_of, load_of, replay, replayed, simulate
@@ -62,7 +61,6 @@ __all__ = [
     "load_of",
     "pack",
     "refuse_diverged_state",
-    "refuse_motor_limits",
     "refuse_too_stiff",
     "replay",
     "replayed",

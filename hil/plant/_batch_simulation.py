@@ -35,7 +35,7 @@ from hil.plant._packed_sets import (
     parts_of,
 )
 from hil.plant._stick_slip import mean_friction
-from hil.plant._torque_path import over_samples
+from hil.plant._torque_path import over_samples, slewed_over
 from hil.plant._tuples import plus, plus_product, plus_row, put
 from hil.plant.kernel import as_tuple
 from hil.plant.sensors import COLUMNS, GAIN, record
@@ -181,7 +181,7 @@ def _moved(x, sub, old, new, column, transition):  # type: ignore[no-untyped-def
 
 @compiled
 def _run_linear(drive, whole, p, x, substeps, column, transition, fine):  # type: ignore[no-untyped-def]
-    acting, shown = drive
+    acting, shown, _ = drive
     for k in range(shown.shape[0]):
         new = acting[max(k + 1 - whole, 0)]
         old = acting[max(k - whole, 0)]
@@ -210,11 +210,13 @@ def _braked(y, begins, rises, held, rising, has_wheel):  # type: ignore[no-untyp
 @compiled
 def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, load, fine):  # type: ignore[no-untyped-def]
     # What is none is added all the same, as zero: a state that goes two ways falls apart into scalars.
-    asked, shown = drive
+    asked, shown, torque = drive
     transition, column, held, rising = matrices
     x, memories = first
     chain, acting = chain_of(p), acting_of(p)
-    turns, leaps = L.turns(p), L.leaps(p)
+    turns, leaps, limits = L.turns(p), L.leaps(p), L.limits(p)
+    reach = L.steepest(p) * h * substeps
+    given = slewed = L.limited(asked[max(-whole, 0)], relative_speed(x), p)
     known = varies == BY_ANGLE and angles.shape[0] > 0  # forces are, before the motion is
     gain = held[F.LOSS, X.HOUSING_SPEED] - held[F.LOSS, X.ROTOR_SPEED]
     friction = 0.0
@@ -229,9 +231,15 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, l
             rises = (load[min(k + 1, load.shape[0] - 1)] - brakes) / substeps
         new = asked[max(k + 1 - whole, 0)]
         old = asked[max(k - whole, 0)]
+        instant = shown[k]
+        if limits:  # by the speed, as the motion is known
+            wanted = L.limited(L.shaped(torque[max(k + 1 - whole, 0)], p), relative_speed(x), p)
+            instant = old = given
+            given, slewed = slewed_over(wanted, slewed, reach)
+            new = given
         fine[k, SPEED] = relative_speed(x)
         fine[k, WHEEL] = x[X.WHEEL_SPEED]
-        fine[k, SHAFT] = F.shaft_torque(x, f, brakes, p, shown[k], acting.dry)
+        fine[k, SHAFT] = F.shaft_torque(x, f, brakes, p, instant, acting.dry)
         for sub in range(substeps):
             y = plus(_pushed(X.LINEAR_AT_REST, f, held), 1.0, _moved(x, sub, old, new, column, transition))
             if load is not None:
@@ -284,7 +292,7 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, l
 @compiled
 def _run_by_angle(drive, whole, p, first, h, substeps, matrices, angles, fine):  # type: ignore[no-untyped-def]
     """As `_run_forced`, by forces on shaft and rotor that measured angles tell before the motion is."""
-    asked, shown = drive
+    asked, shown, _ = drive
     transition, column, held, rising = matrices
     x, memories = first
     chain, acting = chain_of(p), acting_of(p)
@@ -312,16 +320,17 @@ def _run(torque, dt, vector, start, substeps, varies, matrices, angles, load, fi
     p = as_tuple(vector)
     acting, ends, shown = np.empty(torque.shape[0]), np.empty(torque.shape[0]), np.empty(fine.shape[0])
     over_samples(torque, dt, p, acting, ends)
-    first = _first_state(p, start, acting[0])
+    first = _first_state(p, start, L.limited(acting[0], start[SPEED], p))
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
     _shown(acting, ends, dt, whole, p, shown)
-    drive = (acting, shown)
+    drive = (acting, shown, torque)
+    limits = L.limits(p)
     h = dt / substeps
     known = varies == BY_ANGLE and angles.shape[0] > 0 and load is None
     does = acting_of(p)
-    if known and not (does.dry or does.load or does.tyre or does.memory):
+    if known and not (does.dry or does.load or does.tyre or does.memory or limits):
         _run_by_angle(drive, whole, p, first, h, substeps, matrices, angles, fine)
-    elif varies != CONSTANT or L.pushes(p) or load is not None:
+    elif varies != CONSTANT or L.pushes(p) or limits or load is not None:
         _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, load, fine)
     else:
         _run_linear(drive, whole, p, first[0], substeps, matrices[1], matrices[0], fine)

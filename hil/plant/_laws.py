@@ -8,7 +8,7 @@ that calls it, not when a compiled one is loaded:
         one force of all effects together: (motion, chain, memories, p)
     shaft_leap
         what their torque is within a step beyond a straight line: (before, after, chain, memories, p, h)
-    moves_shaft, slows_rotor, may_stick, loads, moves_tyre, remembers, turns, pushes, leaps
+    moves_shaft, slows_rotor, may_stick, loads, moves_tyre, remembers, turns, limits, pushes, leaps
         whether any effect that has such a law does anything: (p)
     shaped: the torque that a request becomes: (torque, p)
     limited: what the motor gives of it at the rotor's speed: (torque, speed, p)
@@ -289,6 +289,7 @@ _MAKERS: dict[str, Callable[[], Any]] = {
     "moves_tyre": lambda: _any_of("tyre", "tyre_rate"),
     "remembers": lambda: _any_of("remember"),
     "turns": lambda: _any_of("follows"),
+    "limits": lambda: _any_of("limit"),
     "leaps": lambda: _any_of("leap"),
     "pushes": lambda: _any_of("shaft", "loss", "dry", "load", "tyre", "tyre_rate"),
     "shaped": lambda: _in_turn("shape", _shaped, lambda torque, p: torque),

@@ -17,7 +17,6 @@ from hil.core.recording import Recording
 from hil.plant import _angles, _recorded, kernel, slots
 from hil.plant._batch_simulation import simulate_many
 from hil.plant._functions import respond_many
-from hil.plant._motor_limits import is_limited
 from hil.plant._regulated import turning_load
 from hil.plant._stability import LONGEST_STEP_S, refuse_divergence, refuse_too_stiff
 from hil.plant._stamps import UNEVEN_SHARE, at_true_times, even_times, held_over, jittered
@@ -174,7 +173,7 @@ def _shown_from(
 
     By the equations for many models at once, but for those of a model that these do not have.
     """
-    if form_of(model)[len(LUMPED) :] or is_limited(model):
+    if form_of(model)[len(LUMPED) :]:
         each = [simulate(model, torque, dt, start, load_nm=load) for start in starts]
         return np.stack([np.column_stack([shown[name] for name in OUTPUTS]) for shown in each])
     begins = np.array([

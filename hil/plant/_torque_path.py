@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from hil.core.runtime.compiled import compiled
+from hil.core.runtime.compiled import compiled, inlined
 from hil.plant import _laws as L
 from hil.plant.kernel import as_tuple
 
@@ -13,20 +13,21 @@ from hil.plant.kernel import as_tuple
 def over_samples(torque, dt, p, out, ends):  # type: ignore[no-untyped-def]
     """The torque path but for its delay and lag: the torque over each sample and at its end."""
     reach = L.steepest(p) * dt
-    slewed = 0.0
+    slewed = L.shaped(torque[0], p)
     for k in range(torque.shape[0]):
-        wanted = L.shaped(torque[k], p)
-        if k == 0:
-            slewed = wanted
-        gap = wanted - slewed
-        if abs(gap) <= reach:  # arrives within the sample: the mean over it
-            out[k] = wanted - gap * abs(gap) / (2.0 * reach) if reach < math.inf and gap != 0.0 else wanted
-            slewed = wanted
-        else:
-            moved = slewed + math.copysign(reach, gap)
-            out[k] = 0.5 * (slewed + moved)
-            slewed = moved
+        out[k], slewed = slewed_over(L.shaped(torque[k], p), slewed, reach)
         ends[k] = slewed
+
+
+@inlined
+def slewed_over(wanted, slewed, reach):  # type: ignore[no-untyped-def]
+    """Mean over a sample, and value at its end, of a torque that goes by `reach` at most in it."""
+    gap = wanted - slewed
+    if abs(gap) <= reach:  # arrives within the sample
+        mean = wanted - gap * abs(gap) / (2.0 * reach) if reach < math.inf and gap != 0.0 else wanted
+        return mean, wanted
+    moved = slewed + math.copysign(reach, gap)
+    return 0.5 * (slewed + moved), moved
 
 
 @compiled

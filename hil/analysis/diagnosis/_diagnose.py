@@ -16,7 +16,7 @@ from hil.core.channels import ANGLES, OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
-from hil.plant import by_angle, refuse_motor_limits
+from hil.plant import by_angle
 from hil.plant.sides import refuse_separate
 
 
@@ -50,7 +50,6 @@ def diagnose(
             differ in whether they have a speed or its angle.
     """
     refuse_separate(model, "a diagnosis")
-    refuse_motor_limits(model, "a diagnosis")
     refuse_same_data(recordings, holdout)
     _refuse_mixed([*recordings, *holdout])
     asked = Asked.checked({**stated_noise([*recordings, *holdout]), **(noise or {})}, least or {}, at_most_s)

@@ -19,8 +19,9 @@ from hil.analysis.missing_effects._outcome import Outcome, Replay
 from hil.analysis.missing_effects._problem import Problem, problem_of
 from hil.analysis.missing_effects._search import search
 from hil.analysis.missing_effects._series import Series
+from hil.analysis.missing_effects._share import Judged
 from hil.analysis.missing_effects._simulations import INTERRUPTED, OUT_OF_TIME, Allowance, OutOfTimeError
-from hil.analysis.missing_effects._verdict import Judged, as_far_as_known, judged
+from hil.analysis.missing_effects._verdict import as_far_as_known, judged
 from hil.core.model import Model
 
 Array = npt.NDArray[np.float64]

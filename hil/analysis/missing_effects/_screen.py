@@ -71,6 +71,15 @@ class Scene:
         return float(max(np.max(np.abs(one.torque)) for one in self.problem.series))
 
     @cached_property
+    def power_w(self) -> float:
+        ratio = self.parameters["gear_ratio"]
+        seen = [0.0]
+        for one in self.problem.series:
+            speed = one.samples[:, 0] if one.has[0] else ratio * one.samples[:, 1]
+            seen.append(float(np.max(np.nan_to_num(np.abs(one.torque * speed)))))
+        return max(seen)
+
+    @cached_property
     def shaft_torque_nm(self) -> float:
         seen = [np.nanmax(np.abs(one.samples[:, 2])) for one in self.problem.series if one.has[2]]
         return float(max(seen)) if seen else 0.5 * self.torque_nm * self.parameters["gear_ratio"]

@@ -20,6 +20,7 @@ from hil.analysis.missing_effects._linear import structures
 from hil.analysis.missing_effects._odds import Candidate, remains
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import (
+    Scene,
     best_by_name,
     other_minimum,
     promised_by,
@@ -61,7 +62,7 @@ def search(done: Candidates, show: Callable[[str], None]) -> None:
         was_weak, weak = weak, remains(had, has, *problem.noise_in(grown.point.errors)) > HALF
         if weak and was_weak:
             break  # of two that go together the first may take off less than half, the second does not
-        best = _pruned(done, grown)
+        best = _pruned(done, grown, show)
         done.go_on_from(best)
         if any(EFFECTS[use.id].law.follows for use in best.point.hypothesis.terms):
             best = _with_better_angles(done, best)
@@ -325,9 +326,11 @@ def _opened_of(done: Candidates, best: Candidate, index: int, show: Callable[[st
         set_already = float(use.values[parameter.name])
         moved = set_already if set_already != parameter.default else 0.0
         aside, far = [moved * factor for factor in _ASIDE], [moved * factor for factor in _FAR]
+        unit = Scene(done.problem, hypothesis).torque_nm if parameter.unit == "N m" else 1.0
+        opens = [unit * value for value in parameter.opens]
         wider = [
             hypothesis.with_values(index, {parameter.name: value}, opened | {parameter.name})
-            for value in (*parameter.opens, size, -size, *aside, *far)
+            for value in (*opens, size, -size, *aside, *far)
             if value and value != set_already and parameter.lower <= value <= parameter.upper
         ]
         if not wider:
@@ -348,14 +351,19 @@ def _opened_of(done: Candidates, best: Candidate, index: int, show: Callable[[st
     return best
 
 
-def _pruned(done: Candidates, best: Candidate) -> Candidate:
+def _pruned(done: Candidates, best: Candidate, show: Callable[[str], None]) -> Candidate:
     """Without those effects that later ones made needless, and without the last one if it takes nothing off.
 
     It may lead a fit out of a minimum that it was stuck in, and optional numbers that were opened beside it
-    may be all that it brought.
+    may be all that it brought. An effect that looks like the one that leaves may have an optional number for
+    what that did, as limits of a motor have its peak.
     """
     for index in reversed(range(len(best.names))):
         fewer = done.fitted(best.point.hypothesis.without(index), best)
+        gone = best.point.hypothesis.terms[index].id
+        for place, use in enumerate(fewer.point.hypothesis.terms):
+            if gone in EFFECTS[use.id].similar:
+                fewer = _opened_of(done, fewer, place, show)
         if done.score(fewer) >= done.score(best):
-            return _pruned(done, fewer)
+            return _pruned(done, fewer, show)
     return best

@@ -4,15 +4,12 @@
   it, times the share of the misfit beyond noise that goes with it, recordings held out included.
 - `none`: numbers alone have half of the weight or more, and what they leave is proven noise.
 - `unknown`: anything else.
-
-The share is what keeps a name modest where something without a name is larger: a discrepancy that stays can
-make up a name that takes off less than itself.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -21,7 +18,7 @@ from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._curve import curves_of
 from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised, point_at
 from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of
-from hil.analysis.missing_effects._lasting import constancy, held_against_drift
+from hil.analysis.missing_effects._lasting import held_against_drift
 from hil.analysis.missing_effects._mismatch import (
     as_the_base_has,
     gains_instead,
@@ -29,15 +26,15 @@ from hil.analysis.missing_effects._mismatch import (
     mismatches,
     numbers_of,
 )
-from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains, weights_of
-from hil.analysis.missing_effects._orders import is_held, turns
-from hil.analysis.missing_effects._outcome import Named, Outcome, Replay, Verdict
+from hil.analysis.missing_effects._odds import ALIKE, Candidate, weights_of
+from hil.analysis.missing_effects._outcome import Named, Outcome, Verdict
 from hil.analysis.missing_effects._phase import errors_of
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._search import HALF, is_loss
+from hil.analysis.missing_effects._share import LAW, Judged, is_linear, share_of, wrong_by_laws
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
-from hil.core.model import EffectUse, Model
+from hil.core.model import EffectUse
 from hil.plant import rounding_step
 
 Array = npt.NDArray[np.float64]
@@ -46,22 +43,7 @@ _LATE = {"actuator_lag": ("sensor_lag", "time_constant_s"), "dead_time": ("chann
 _ALONE = 2  # single names that may, near noise
 _RIVALS = 3  # names that may take the place of another
 _SHOWN = 5  # alternatives
-_LAW = 0.02  # of what an effect takes off is right in no law that bends
 _DRAWN = 40  # models, by which a figure of the new model is known
-
-
-@dataclass(frozen=True)
-class Judged:
-    """A search, the variance that a candidate leaves over all data, and recordings of both kinds.
-
-    `asked` is the model as it came.
-    """
-
-    asked: Model
-    done: Candidates
-    left: Callable[[Candidate], Array]
-    fitted: tuple[Replay, ...]
-    held_out: tuple[Replay, ...]
 
 
 def as_far_as_known(of: Judged, why: str) -> Outcome:
@@ -160,57 +142,13 @@ def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, Linearised, 
             return best, at, []
         fewer = [_without(of.done, best, index) for index in range(len(best.names))]
         shares = [
-            _share(of, one, best, at, index, _wrong_by_laws(of, best, fewer, index))
+            share_of(of, one, best, at, index, wrong_by_laws(of, best, fewer, index))
             for index, one in enumerate(fewer)
         ]
         least = int(np.argmin(shares))
         if shares[least] >= HALF:
             return best, at, shares
         best = _without(of.done, best, least)
-
-
-def _share(
-    of: Judged, fewer: Candidate, best: Candidate, at: Linearised, index: int, wrong: Array | float = 0.0
-) -> float:
-    """What an effect takes off over that and what stays, where it lasts; 0 of a ripple that is none."""
-    if not _is_line(of.done, at, index):
-        return 0.0
-    lasts = constancy(of.done.problem, at, index, of.done.cost_of_a_number(best))
-    return (1.0 - _remains(of, fewer, best, wrong)) * lasts
-
-
-def _wrong_by_laws(of: Judged, best: Candidate, fewer: Sequence[Candidate], index: int) -> Array:
-    """Variance in each channel, (3,), that others' laws may get wrong without an effect; not linear ones.
-
-    A law that is wrong by a share leaves that of what it takes off in every channel, so no more than where
-    least stays.
-    """
-    left, alone = of.left(best), of.left(fewer[index])
-    wrong = np.zeros(3)
-    for other, use in enumerate(best.point.hypothesis.terms):
-        if other != index and not _is_linear(use):
-            taken = np.maximum(of.left(fewer[other]) - left, 1e-300)
-            wrong += min(_LAW**2, float(np.nanmin(alone / taken))) * taken
-    return wrong
-
-
-def _is_linear(use: EffectUse) -> bool:
-    law = EFFECTS[use.id].law
-    return (law.chain is not None or law.reads is not None) and law.tyre_rate is None
-
-
-def _is_line(done: Candidates, at: Linearised, index: int) -> bool:
-    """Whether an effect follows no angle, or recordings hold periods of its order and tell it to half a one.
-
-    A ripple of less than that takes up whatever is slow.
-    """
-    use = at.point.hypothesis.terms[index]
-    side = EFFECTS[use.id].law.follows
-    if side is None:
-        return True
-    whole = turns(done.problem, side)
-    sure = at.standard_error(index, "order") * whole < HALF
-    return sure and bool(is_held(np.array(float(use.values["order"])), whole))
 
 
 def _swapped(done: Candidates, best: Candidate, asked: Callable[[EffectUse], bool] = lambda _: True) -> None:
@@ -282,7 +220,7 @@ def _named(
 def _errors(problem: Problem, at: Linearised, index: int) -> dict[str, float]:
     """Standard errors of an effect's numbers: by the fit, its law, and angles that may have walked off."""
     use = at.point.hypothesis.terms[index]
-    law = 0.0 if _is_linear(use) else _LAW  # nor are its numbers known better, but an order, which is counted
+    law = 0.0 if is_linear(use) else LAW  # nor are its numbers known better, but an order, which is counted
     errors = {
         name: float(np.hypot(error, (0.0 if name == "order" else law) * float(value)))
         for name, value in use.values.items()
@@ -292,41 +230,6 @@ def _errors(problem: Problem, at: Linearised, index: int) -> dict[str, float]:
         walked = errors_of(problem, at.point, use)
         errors |= {name: max(errors[name], walked[name]) for name in walked if name in errors}
     return errors
-
-
-def _remains(of: Judged, before: Candidate, after: Candidate, wrong: Array | float = 0.0) -> float:
-    """Share of the variance beyond noise that stays; none where numbers of the base had explained it.
-
-    Nor where all that stays may be slow noise, if of one channel half as much as that was taken off, and by
-    more than fits to noise so slow bring. All of it where the score fell: what was dropped beside it paid.
-
-    Args:
-        wrong: variance that stays by what laws get wrong, (3,), of that which is taken off.
-    """
-    problem, done = of.done.problem, of.done
-    if done.score(after) < done.score(before):
-        return 1.0
-    had, has = of.left(before), of.left(after)
-    has = has + np.clip(had - has, 0.0, wrong)
-    if after.prior - before.prior > done.cost_of_a_number(after):
-        had = np.fmax(had, of.left(done.at(_fewer(after.point.hypothesis, before.names), after)))
-    there = np.isfinite(has)
-    noise, most = problem.noise_in(after.point.errors)
-    if np.all(has[there] <= most[there]):
-        grew = after.log_likelihood - before.log_likelihood
-        cost = grew - (done.score(after) - done.score(before))
-        off, slow = (had - has)[there], np.maximum(has - noise, 0.0)[there]
-        if grew / np.max((most / noise)[there]) > cost and np.any(off > HALF * slow):
-            return 0.0
-    return remains(had, has, noise, most)
-
-
-def _fewer(hypothesis: Hypothesis, names: Sequence[str]) -> Hypothesis:
-    """Its effects of these names alone, its numbers what they are."""
-    for index in reversed(range(len(hypothesis.terms))):
-        if hypothesis.names[index] not in names:
-            hypothesis = hypothesis.without(index)
-    return hypothesis
 
 
 def _roundings(done: Candidates, weight: float) -> list[Named]:
@@ -368,7 +271,7 @@ def _alike(
         late = _late_outputs(done, best.point.hypothesis.without(index), use)
         if late is None:
             continue
-        linear = all(_is_linear(other) for other in best.point.hypothesis.without(index).terms)
+        linear = all(is_linear(other) for other in best.point.hypothesis.without(index).terms)
         other = best.point if linear else fit(problem, point_at(problem, late, best.point.starts))
         if _apart(problem, best.point, other) < ALIKE:
             label = best.names[index]
@@ -425,7 +328,7 @@ def _others(of: Judged, best: Candidate, candidates: Sequence[Candidate], weight
             at = linearised(of.done.weighed_as(one, once=True), one.point)
             index = one.names.index(label_of(use))
             fewer = of.done.found.get(tuple(sorted({*one.names} - {label_of(use)})), best)
-            share = _share(of, fewer, one, at, index)
+            share = share_of(of, fewer, one, at, index)
         if weight * share > 0.0:
             model = one.point.hypothesis.model()
             found.append(Named(use, weight * share, {}, (), EFFECTS[use.id].shown_by, model))

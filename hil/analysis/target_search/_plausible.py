@@ -35,6 +35,7 @@ class Scene:
     shaft_torque_nm: float
     parameters: Mapping[str, float]
     channels: tuple[str, ...] = OUTPUTS
+    power_w: float = 0.0  # at no known speed
 
     def orders(self, side: Literal["wheel", "rotor"]) -> list[float]:
         """The ends of the orders that are looked at."""

@@ -63,7 +63,8 @@ class Parameter:
         step: of a finite difference, times the usual one.
         within: how far a fit may go, where that is not from `lower` to `upper`.
         fitted: whether a fit may move it.
-        opens: an optional number is tried from these values once its effect is found.
+        opens: an optional number is tried from these values once its effect is found; those of a torque are
+            shares of the largest one that was asked for.
         rough: errors are rough in it, since contact comes and goes.
         choices: values between which a diagnosis chooses, for a number that no fit moves.
         beside: the optional number that it is opened together with: without it, it means little or nothing.

@@ -48,6 +48,10 @@ class Scene(Protocol):
         """Largest requested torque, rotor side."""
 
     @property
+    def power_w(self) -> float:
+        """Largest power that a request asks of the motor at its speed; 0 where no speed is known."""
+
+    @property
     def shaft_torque_nm(self) -> float:
         """Largest shaft torque, by the model where it was not measured."""
 

@@ -13,33 +13,46 @@ with ω the rotor's speed against the housing. The request is held over a sample
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from hil.core.chain import Chain
 from hil.core.effects._effect import Effect, Parameter, Stage
 from hil.core.effects._law import Law, Values
+from hil.core.effects._probe import STRETCH, Direction, Probe, Scene
 
 _STANDS_RAD_S = 1e-3  # below, no power limits a torque
+_ANY_NM = 1e6  # a peak torque that is not known limits nothing
 
 
 def _prepare(chain: Chain, values: Values) -> Values:
-    """In place of the first three numbers: peak torque, driving and regenerated power as they are now."""
-    peak, power, regenerated, charge, low, high, temperature, warm, hot = values
+    """In place of the first three numbers: driving power, peak torque and regenerated power as they are."""
+    power, peak, regenerated, charge, low, high, temperature, warm, hot = values
     cool = min(max((hot - temperature) / (hot - warm), 0.0), 1.0)
     gives = min(charge / low, 1.0) if low > 0.0 else 1.0
     takes = min((1.0 - charge) / (1.0 - high), 1.0) if high < 1.0 else 1.0
     back = regenerated if regenerated > 0.0 else power
-    return cool * peak, cool * gives * power, cool * takes * back, charge, low, high, temperature, warm, hot
+    return cool * gives * power, cool * peak, cool * takes * back, charge, low, high, temperature, warm, hot
 
 
 def _limit(torque: float, speed: float, values: Values) -> float:
     """Acting torque in N m at the rotor's speed in rad/s."""
-    power = values[1] if torque * speed >= 0.0 else values[2]
-    most = values[0]
+    power = values[0] if torque * speed >= 0.0 else values[2]
+    most = values[1]
     if abs(speed) > _STANDS_RAD_S:
         most = min(most, power / abs(speed))
     return min(max(torque, -most), most)
+
+
+def _probes(scene: Scene) -> Iterator[Probe]:
+    for share in (0.97, 0.92, 0.85, 0.75, 0.65, 0.55, 0.45, 0.35, 0.25) if scene.power_w > 0.0 else ():
+        yield _clipped(scene.power_w, share)
+
+
+def _clipped(power: float, share: float) -> Probe:
+    """A limit of the power alone; its response goes about with what it cuts off."""
+    direction = Direction({"power_w": share * power}, *STRETCH)
+    return Probe((direction,), lambda a: {"power_w": max(1.0 - float(a[0]) * (1.0 - share), 0.05) * power})
 
 
 def _together(values: Mapping[str, Any], others: Mapping[str, Mapping[str, Any]]) -> tuple[str, str] | None:
@@ -57,8 +70,17 @@ EFFECT = Effect(
     signature="Torque falls short of the request at high speed, or of regeneration with a full battery.",
     shown_by="A large torque step at several speeds.",
     parameters=(
-        Parameter("peak_nm", "N m", 1e-6, 1e6, "largest torque at low speed"),
         Parameter("power_w", "W", 1e-3, 1e9, "largest mechanical power of driving"),
+        Parameter(
+            "peak_nm",
+            "N m",
+            1e-6,
+            _ANY_NM,
+            "largest torque at low speed",
+            optional=True,
+            default=_ANY_NM,
+            opens=(0.97, 0.85, 0.7, 0.55, 0.4, 0.25),
+        ),
         Parameter("regenerated_w", "W", 0.0, 1e9, "of regeneration; 0: as of driving", optional=True),
         Parameter("state_of_charge", "1", 0.0, 1.0, "of the battery", optional=True, default=0.5),
         Parameter("low_charge", "1", 0.0, 1.0, "below which driving power falls", optional=True, default=0.1),
@@ -82,5 +104,7 @@ EFFECT = Effect(
     law=Law(prepare=_prepare, limit=_limit),
     off=float("inf"),
     together=_together,
+    probes=_probes,
+    abrupt=True,
     similar=("torque_saturation",),
 )

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis import diagnose
-from hil.core.channels import INPUT, TIME
+from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model, model_from_dict
-from hil.core.recording import Recording
 from hil.fmu import Axle
-from hil.plant import Start, refuse_motor_limits, simulate
+from hil.plant import Start, ideal_sensors, pack, simulate, simulate_many
 from tests.hil.plant.test_effects import THREE
 
 RIGID = {
@@ -102,10 +99,17 @@ def test_limits_that_contradict_each_other_are_refused() -> None:
         limited(warm_deg_c=160.0, hot_deg_c=120.0)
 
 
-def test_what_computes_the_torque_first_refuses_it() -> None:
-    with pytest.raises(BadInputError, match="'motor_limits' needs the speed"):
-        refuse_motor_limits(limited(), "a fit")
-    time = np.arange(100, dtype=np.float64) * DT
-    recording = Recording({TIME: time, INPUT: time, "motor_speed_rad_s": time}, Path("here.csv"))
-    with pytest.raises(BadInputError, match="a diagnosis computes"):
-        diagnose(limited(), [recording])
+@pytest.mark.parametrize("slope", [(), (EffectUse("torque_rate_limit", {"limit_nm_s": 1500.0}),)])
+@pytest.mark.parametrize("base", [model_from_dict(RIGID, "here"), Model("three_inertia", THREE.parameters)])
+def test_the_equations_for_many_models_at_once_have_the_same_motor(
+    base: Model, slope: tuple[EffectUse, ...]
+) -> None:
+    """A request beyond both limits and back, which a slope limit would take its time to leave."""
+    model = base.with_effects(*limited(power_w=4000.0).effects, *slope)
+    torque = 150.0 * np.sign(np.sin(np.arange(3000) * DT * 2.0 * np.pi))
+    wheel = 60.0 / model.parameters["gear_ratio"]
+    alone = simulate(model, torque, DT, Start(60.0, wheel, motor_torque_nm=0.0))
+    begins = np.array([[60.0, wheel, 0.0]])
+    many = simulate_many(pack(model)[None], torque, DT, begins, ideal_sensors(1), before_nm=0.0)[0]
+    for name, shown in zip(OUTPUTS[:2], many.T, strict=False):
+        assert np.max(np.abs(shown - alone[name])) < 2e-3 * np.max(np.abs(alone[name])), name

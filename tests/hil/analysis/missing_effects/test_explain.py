@@ -57,6 +57,28 @@ def test_gravity_of_an_arm_that_turns_less_than_once_is_named_from_its_encoder(m
     assert found.numbers["viscous_drag"][1] == pytest.approx(1.0, rel=0.02)
 
 
+@pytest.mark.parametrize(
+    ("truth", "name", "numbers"),
+    [
+        ({"power_w": 80.0}, "motor_limits", {"power_w": 80.0, "peak_nm": 1e6}),
+        ({"power_w": 50.0, "peak_nm": 12.0}, "motor_limits", {"power_w": 50.0, "peak_nm": 12.0}),
+        ({"peak_nm": 12.0}, "torque_saturation", {"limit_nm": 12.0}),
+    ],
+)
+def test_a_limited_motor_is_named_with_the_limits_that_were_met(
+    truth: dict[str, float], name: str, numbers: dict[str, float]
+) -> None:
+    fit, held = (recording(0.54, 2.17, seed=seed, **truth) for seed in (0, 5))
+    model = base(0.54, 2.17)
+    found = explain_gap(model, series_of(model, [fit]), series_of(model, [held]))
+    assert [one.id for one in found.effects] == [name]
+    assert found.effects[0].confidence > 0.95
+    for number, value in numbers.items():
+        assert found.effects[0].use.values[number] == pytest.approx(value, rel=0.005)
+    left = held["motor_speed_rad_s"] - found.held_out[0].outputs(found.model)[:, 0]
+    assert np.std(left) < 1.05 * found.noise[0]
+
+
 def test_a_right_base_has_nothing_missing_and_a_wrong_number_is_named() -> None:
     right = _asked(base(0.54, 2.17), 0.54, 2.17)
     assert (right.verdict, right.effects) == ("none", ())

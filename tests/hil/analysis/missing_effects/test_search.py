@@ -44,7 +44,7 @@ def test_a_name_that_takes_nothing_off_leaves_though_it_came_last(order: tuple[i
     both = Hypothesis(model, dict(model.parameters))
     for index in order:
         both = both.with_term((friction, air)[index])
-    assert _pruned(done, done.fitted(both, None)).names == ("coulomb_friction",)
+    assert _pruned(done, done.fitted(both, None), lambda _: None).names == ("coulomb_friction",)
 
 
 def test_a_dead_time_goes_to_the_likeliest_place_within_its_sample() -> None:

@@ -7,7 +7,8 @@ import numpy as np
 from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._fit import point_at
 from hil.analysis.missing_effects._hypothesis import Hypothesis
-from hil.analysis.missing_effects._verdict import Judged, _alike, _remains
+from hil.analysis.missing_effects._share import Judged, _remains
+from hil.analysis.missing_effects._verdict import _alike
 from hil.core.model import EffectUse
 from tests.hil.analysis.missing_effects.chain import problem_about
 from tests.hil.analysis.missing_effects.two_masses import base, braked

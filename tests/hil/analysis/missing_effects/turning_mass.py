@@ -1,4 +1,4 @@
-"""A turning mass with dry friction and gravity by formulas of its own: data for tests and benchmarks.
+"""A turning mass with dry friction, gravity and a limited motor by formulas of its own, for tests and benchmarks.
 
 Semi-implicit steps of 50 µs; at rest the mass stays where it is while the torque is below its friction.
 """
@@ -18,13 +18,14 @@ _SAMPLE_S, _PARTS = 1e-3, 20
 
 
 @njit(cache=True)
-def _turn(torque, inertia, viscous, dry, gravity, out):  # type: ignore[no-untyped-def]
+def _turn(torque, inertia, viscous, dry, gravity, peak, power, out):  # type: ignore[no-untyped-def]
     speed, angle = 0.0, 0.0
     h = _SAMPLE_S / _PARTS
     for k in range(len(torque)):
         out[k] = speed
         for _ in range(_PARTS):
-            drive = torque[k] - viscous * speed - gravity * np.sin(angle)
+            most = min(peak, power / max(abs(speed), 1e-9))
+            drive = max(-most, min(torque[k], most)) - viscous * speed - gravity * np.sin(angle)
             if speed == 0.0 and abs(drive) <= dry:
                 continue
             way = np.sign(speed) if speed != 0.0 else np.sign(drive)
@@ -41,12 +42,17 @@ def recording(
     dry: float = 0.0,
     gravity: float = 0.0,
     *,
+    peak_nm: float = np.inf,
+    power_w: float = np.inf,
     torque_nm: float = 20.0,
     noise_rad_s: float = 0.02,
     seconds: float = 30.0,
     seed: int = 0,
 ) -> Recording:
-    """Random steps of torque with reversals, a small 3 Hz tone on them; speed with white noise at 1 kHz."""
+    """Random steps of torque with reversals, a small 3 Hz tone on them; speed with white noise at 1 kHz.
+
+    Motor and inverter give what `peak_nm` and `power_w` allow of the torque at any moment.
+    """
     rng = np.random.default_rng(seed)
     time = np.arange(round(seconds / _SAMPLE_S), dtype=np.float64) * _SAMPLE_S
     torque = np.zeros(len(time))
@@ -58,7 +64,7 @@ def recording(
         at = end
     torque += 0.1 * torque_nm * np.sin(2.0 * np.pi * 3.0 * time) * (time > 0.5)
     speed = np.empty(len(time))
-    _turn(torque, inertia, viscous, dry, gravity, speed)
+    _turn(torque, inertia, viscous, dry, gravity, peak_nm, power_w, speed)
     shown: npt.NDArray[np.float64] = speed + rng.normal(0.0, noise_rad_s, len(time))
     channels = {"time_s": time, "motor_torque_ref_nm": torque, "motor_speed_rad_s": shown}
     return Recording(channels, Path(f"turning mass {seed}.csv"))

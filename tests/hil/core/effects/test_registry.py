@@ -19,8 +19,8 @@ CONTRACT = {
     "torque_deadband": ("half_width_nm",),
     "torque_gain": ("gain",),
     "motor_limits": (
-        "peak_nm",
         "power_w",
+        "peak_nm",
         "regenerated_w",
         "state_of_charge",
         "low_charge",
