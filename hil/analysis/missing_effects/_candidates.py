@@ -101,11 +101,13 @@ class Candidates:
         near: Candidate | None,
         rounds: int = ROUNDS,
         held: frozenset[str] = frozenset(),
+        at_least: float = -math.inf,
     ) -> Candidate:
         """Fit a hypothesis, weighed by the spectrum that it leaves itself; the best of its names is kept.
 
         Args:
             held: numbers of the base that stay what they are.
+            at_least: a score; a fit ends where its numbers do not promise to reach it.
         """
         goes_on = near is not None and near.point.hypothesis is hypothesis
         point = near.point if near and goes_on else self._begun(hypothesis, near)
@@ -116,6 +118,9 @@ class Candidates:
         elif hypothesis.kind == "rigid":  # slow errors of a mass are friction; a chain's bend its resonances
             problem = problem.weighed_by_noise()
         for number in range(rounds if rounds < ROUNDS else MOST_ROUNDS):
+            begun = goes_on or number > 0
+            if begun and at_least > -math.inf and self.score(before) + self.promised(before) < at_least:
+                break
             # slow misfit would trade a dead time for anything, until errors are weighed by their colour
             point = fit(problem, point, held if number or goes_on else held | {"torque_delay"})
             after = self.judged(point)

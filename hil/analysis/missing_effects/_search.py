@@ -17,7 +17,7 @@ from hil.analysis.missing_effects._fit import (
 )
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._linear import structures
-from hil.analysis.missing_effects._odds import Candidate, remains
+from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import (
     Scene,
@@ -186,8 +186,13 @@ def _best_of(
         tried = tried[: max(_RIVALS, len(tried) // 2)]
         tried = _best_of_each_name(done, [done.fitted(one.point.hypothesis, one, rounds) for one in tried])
         rounds *= 2
-    ended = [_opened(done, done.fitted(one.point.hypothesis, one), show) for one in tried]
-    grown = max(ended, key=done.score, default=None)
+    grown: Candidate | None = None
+    for one in tried:
+        terms = one.point.hypothesis.terms
+        may_open = any(number.opens for use in terms for number in EFFECTS[use.id].parameters)
+        least = -math.inf if grown is None or may_open else done.score(grown) - ALIKE
+        ended = _opened(done, done.fitted(one.point.hypothesis, one, at_least=least), show)
+        grown = ended if grown is None else max(grown, ended, key=done.score)
     return grown and _out_of_minima(done, grown)
 
 
@@ -199,7 +204,7 @@ def _out_of_minima(done: Candidates, best: Candidate) -> Candidate:
     while reaches:
         problem = done.weighed_as(best)
         gain, begins = other_minimum(problem, linearised(problem, best.point), reaches[0])
-        tried = done.fitted(begins, best) if gain > GROWING else best
+        tried = done.fitted(begins, best, at_least=done.score(best)) if gain > GROWING else best
         if done.score(tried) < done.score(best) + GROWING:
             reaches.pop(0)
         best = max(best, tried, key=done.score)

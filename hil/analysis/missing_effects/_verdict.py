@@ -160,15 +160,16 @@ def _swapped(done: Candidates, best: Candidate, asked: Callable[[EffectUse], boo
     base's numbers as well: what was missing beside them then may have decided between them.
     """
     pool = sorted(done.found.values(), key=done.score, reverse=True)
+    least = done.score(best) - ALIKE  # what is less likely decides nothing
     if done.problem.is_noise(best.point.errors):
         for one in [one for one in pool if len(one.names) == len(best.names)][: _RIVALS + 1]:
             if one.names != best.names:
-                done.fitted(one.point.hypothesis, one)
+                done.fitted(one.point.hypothesis, one, at_least=least)
         alone = [one for one in pool if len(one.names) == 1 and one.names[0] not in best.names]
         for index in range(len(best.names)) if len(best.names) > 1 else ():
             for single in alone[:_ALONE]:
-                for begins in _in_its_place(done, best, index, single):
-                    done.fitted(begins, best)
+                for begins in _in_its_place(done, best, index, single, least):
+                    done.fitted(begins, best, at_least=least)
         return
     terms: dict[str, tuple[EffectUse, frozenset[str]]] = {}
     for one in pool:
@@ -180,10 +181,12 @@ def _swapped(done: Candidates, best: Candidate, asked: Callable[[EffectUse], boo
     for index, use in enumerate(best.point.hypothesis.terms):
         fewer = best.point.hypothesis.without(index)
         for rival in [*terms.values()][:_RIVALS] if asked(use) else ():
-            done.fitted(fewer.with_term(*rival), best)
+            done.fitted(fewer.with_term(*rival), best, at_least=least)
 
 
-def _in_its_place(done: Candidates, best: Candidate, index: int, rival: Candidate) -> list[Hypothesis]:
+def _in_its_place(
+    done: Candidates, best: Candidate, index: int, rival: Candidate, least: float
+) -> list[Hypothesis]:
     """The best hypothesis with a rival in place of one of its effects, at numbers where a fit may begin.
 
     They are the likelier of its own and the rival's; and the base's, to which the effects were fitted first.
@@ -192,7 +195,8 @@ def _in_its_place(done: Candidates, best: Candidate, index: int, rival: Candidat
     joined = fewer.with_term(other.terms[0], other.opened[0])
     near = max(joined, replace(joined, numbers=other.numbers), key=lambda one: done.score(done.at(one, best)))
     as_it_came = replace(joined, numbers=dict(fewer.base.parameters))
-    return [near, done.fitted(as_it_came, best, held=frozenset(joined.numbers)).point.hypothesis]
+    held = done.fitted(as_it_came, best, held=frozenset(joined.numbers), at_least=least)
+    return [near, held.point.hypothesis]
 
 
 def _without(done: Candidates, best: Candidate, index: int) -> Candidate:

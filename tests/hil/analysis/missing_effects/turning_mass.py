@@ -1,4 +1,4 @@
-"""A turning mass with dry friction, gravity and a limited motor, by formulas of its own, for tests, benchmarks.
+"""A turning mass with dry friction, gravity and a limited motor by formulas of its own, for tests.
 
 Semi-implicit steps of 50 µs; at rest the mass stays where it is while the torque is below its friction.
 """
