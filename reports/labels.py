@@ -88,10 +88,14 @@ def criterion_title(id_: str) -> str:
     return f"{words[:1].upper()}{words[1:]}, {segment}" + (f" below {rival}" if rival else "")
 
 
+#: Units at the end of names, a torque's with what it is over.
+_UNIT = re.compile(r"_((nms?2?|kg)(_(rad|s|m)[23]?)?|rad_s|rad|m_s|s|hz|deg_c|deg|m|w)$")
+
+
 def parameter_title(name: str) -> str:
     """A parameter of a model or an effect in words, its unit left to a column of its own."""
     id_, _, number = name.rpartition(".")
-    words = re.sub(r"_(rad_s|rad|nm|m_s|s|hz|deg|m)$", "", number).replace("_", " ")
+    words = _UNIT.sub("", number).replace("_", " ")
     return f"{id_.replace('.', ', ').replace('_', ' ')}, {words}".removeprefix(", ")
 
 

@@ -50,3 +50,7 @@ def test_ids_of_criteria_and_channels_have_titles() -> None:
     assert with_titles("my_shaft_torque_nm") == "my_shaft_torque_nm"
     assert parameter_title("motor_inertia") == "motor inertia"
     assert parameter_title("backlash.half_gap_rad") == "backlash, half gap"
+    assert parameter_title("motor_limits.power_w") == "motor limits, power"
+    assert parameter_title("shaft_cubic_stiffness.coefficient_nm_rad3") == "shaft cubic stiffness, coefficient"
+    assert parameter_title("running_resistance.aero_nms2_rad2") == "running resistance, aero"
+    assert parameter_title("mount_mode.housing_inertia_kg_m2") == "mount mode, housing inertia"

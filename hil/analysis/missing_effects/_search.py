@@ -166,10 +166,10 @@ def _best_of(
     suggested: Sequence[tuple[Hypothesis, float]],
     show: Callable[[str], None],
 ) -> Candidate | None:
-    """The likeliest of suggested hypotheses, by successive halving.
+    """The likeliest of suggested hypotheses.
 
-    Each gets a round, the better half more, until two are fitted to their end (K. Jamieson, A. Talwalkar,
-    AISTATS 2016, 240).
+    Each gets a round. Then those are fitted to their end, the most promising first, that come near the best
+    so far by their score and what their numbers promise to add.
     """
     begun: list[Candidate] = []
     reached = 0.0
@@ -180,20 +180,23 @@ def _best_of(
         show(f"fitting {' + '.join(hypothesis.names)}")
         begun.append(done.fitted(hypothesis, best, 1))
         reached = max(reached, begun[-1].log_likelihood - best.log_likelihood)
-    rounds = 1
-    tried = _best_of_each_name(done, _caught_up(done, begun))
-    while len(tried) > _RIVALS:
-        tried = tried[: max(_RIVALS, len(tried) // 2)]
-        tried = _best_of_each_name(done, [done.fitted(one.point.hypothesis, one, rounds) for one in tried])
-        rounds *= 2
     grown: Candidate | None = None
-    for one in tried:
-        terms = one.point.hypothesis.terms
-        may_open = any(number.opens for use in terms for number in EFFECTS[use.id].parameters)
-        least = -math.inf if grown is None or may_open else done.score(grown) - ALIKE
-        ended = _opened(done, done.fitted(one.point.hypothesis, one, at_least=least), show)
-        grown = ended if grown is None else max(grown, ended, key=done.score)
+    for may_reach, one in sorted(_most_promising(done, begun), key=lambda pair: -pair[0]):
+        least = -math.inf if grown is None else done.score(grown) - ALIKE
+        if may_reach > least:
+            ended = _opened(done, done.fitted(one.point.hypothesis, one, at_least=least), show)
+            grown = ended if grown is None else max(grown, ended, key=done.score)
     return grown and _out_of_minima(done, grown)
+
+
+def _most_promising(done: Candidates, begun: Sequence[Candidate]) -> list[tuple[float, Candidate]]:
+    """Of each set of names the start that may reach most, with that score: starts of a name are no rivals."""
+    found: dict[tuple[str, ...], tuple[float, Candidate]] = {}
+    for one in begun:
+        may_reach = done.score(one) + done.promised(one)
+        if one.names not in found or may_reach > found[one.names][0]:
+            found[one.names] = may_reach, one
+    return list(found.values())
 
 
 def _out_of_minima(done: Candidates, best: Candidate) -> Candidate:
@@ -209,20 +212,6 @@ def _out_of_minima(done: Candidates, best: Candidate) -> Candidate:
             reaches.pop(0)
         best = max(best, tried, key=done.score)
     return best
-
-
-def _caught_up(done: Candidates, tried: Sequence[Candidate]) -> list[Candidate]:
-    """After rounds more as long as their numbers promise more than a candidate is behind the best."""
-    for _ in range(_RIVALS):
-        ahead = max((done.score(one) for one in tried), default=0.0)
-        behind = [one for one in tried if done.score(one) < ahead < done.score(one) + done.promised(one)]
-        if not behind:
-            break
-        tried = [
-            done.fitted(one.point.hypothesis, one, 1) if any(one is other for other in behind) else one
-            for one in tried
-        ]
-    return [*tried]
 
 
 def _best_of_each_name(done: Candidates, tried: Sequence[Candidate]) -> list[Candidate]:
