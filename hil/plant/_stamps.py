@@ -40,7 +40,9 @@ def jittered(dt: float) -> str:
 def _times(recording: Recording) -> Array:
     """Time stamps in s, or the times of a clock, (n,); each stamp must be nearest to a time of its own."""
     time = recording.time_s
-    if len(time) < 4 * _AROUND:
+    steps = np.diff(time)
+    usual = float(np.mean(steps)) if len(steps) else 0.0
+    if len(time) < 4 * _AROUND or np.max(np.abs(steps - usual)) <= UNEVEN_SHARE * usual:
         return time
     grid, dt = even_times(time)
     place = np.rint((time - grid[0]) / dt).astype(np.int64)

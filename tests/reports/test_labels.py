@@ -51,6 +51,8 @@ def test_ids_of_criteria_and_channels_have_titles() -> None:
     assert parameter_title("motor_inertia") == "motor inertia"
     assert parameter_title("backlash.half_gap_rad") == "backlash, half gap"
     assert parameter_title("motor_limits.power_w") == "motor limits, power"
-    assert parameter_title("shaft_cubic_stiffness.coefficient_nm_rad3") == "shaft cubic stiffness, coefficient"
+    assert (
+        parameter_title("shaft_cubic_stiffness.coefficient_nm_rad3") == "shaft cubic stiffness, coefficient"
+    )
     assert parameter_title("running_resistance.aero_nms2_rad2") == "running resistance, aero"
     assert parameter_title("mount_mode.housing_inertia_kg_m2") == "mount mode, housing inertia"

@@ -90,17 +90,15 @@ TURNS_ON: Annotated[
 HELD_STEPS: Annotated[
     float, Means("steps of the reading", "a speed that moves by less may read the same", "bad_input")
 ] = 3.0
-SLOW_UNPROVEN: Annotated[
-    float, Means("of the proven noise", "an error up to it may be called noise that is slow", "held_out")
-] = 1.2
 STANDSTILL_SHARE: Annotated[
     float, Means("of the largest speed", "below it the axle is near standstill", "gap")
 ] = 0.03
 REVERSAL_S: Annotated[
     float, Means("s", "so long after torque changes its sign counts as reversal", "gap")
 ] = 0.15
-LARGE_TORQUE: Annotated[float, Means("of the largest torque", "above it torque is large", "gap")] = 0.6
-HIGH_SPEED: Annotated[float, Means("of the largest speed", "above it speed is high", "gap")] = 0.6
+LARGE: Annotated[
+    float, Means("of the largest torque or speed", "above it torque is large, or speed high", "gap")
+] = 0.6
 WORSE: Annotated[
     float, Means("times the error before", "a band of a channel with more was made worse", "gap")
 ] = 1.5

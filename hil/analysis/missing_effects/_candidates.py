@@ -28,6 +28,7 @@ _SETTLED = 0.1  # growth of log likelihood between rounds that ends them
 GROWING = 1.0
 """Growth of log likelihood above which a fit goes on: what it lacks would look like another name."""
 MOST_ROUNDS = 4 * ROUNDS
+_TO_FIRST_ORDER = 2.0  # times what numbers promise may a fit bring
 _OF_A_SAMPLE = (0.02, 0.25, 0.5, 0.75, 0.98)  # where a dead time may be within the sample that it ends in
 
 
@@ -95,6 +96,10 @@ class Candidates:
         problem = self.weighed_as(candidate)
         return Projection(problem, linearised(problem, candidate.point)).alone.gain
 
+    def may_reach(self, candidate: Candidate) -> float:
+        """The score to which its numbers may still bring a candidate."""
+        return self.score(candidate) + _TO_FIRST_ORDER * max(self.promised(candidate), 0.0)
+
     def fitted(
         self,
         hypothesis: Hypothesis,
@@ -107,7 +112,7 @@ class Candidates:
 
         Args:
             held: numbers of the base that stay what they are.
-            at_least: a score; a fit ends where its numbers do not promise to reach it.
+            at_least: a score; a fit ends where neither its last round nor its numbers promise to reach it.
         """
         goes_on = near is not None and near.point.hypothesis is hypothesis
         point = near.point if near and goes_on else self._begun(hypothesis, near)
@@ -118,15 +123,14 @@ class Candidates:
         elif hypothesis.kind == "rigid":  # slow errors of a mass are friction; a chain's bend its resonances
             problem = problem.weighed_by_noise()
         for number in range(rounds if rounds < ROUNDS else MOST_ROUNDS):
-            begun = goes_on or number > 0
-            if begun and at_least > -math.inf and self.score(before) + self.promised(before) < at_least:
-                break
             # slow misfit would trade a dead time for anything, until errors are weighed by their colour
             point = fit(problem, point, held if number or goes_on else held | {"torque_delay"})
             after = self.judged(point)
             best = max(best, after, key=self.score)
             growth = after.log_likelihood - before.log_likelihood
             if abs(growth) < _SETTLED or (number >= ROUNDS - 1 and growth < GROWING):
+                break
+            if self.score(after) + growth < at_least and self.may_reach(after) < at_least:
                 break
             before = after
             problem = self.weighed_as(after)

@@ -22,9 +22,10 @@ Array = npt.NDArray[np.float64]
 _Result = TypeVar("_Result")
 
 _BEHIND_WHEELS = frozenset({"wheel_inertia", "tyre_stiffness", "tyre_damping", "vehicle_inertia"})
+SLOW_NOISE = 1.2
+"""Times its white noise may a sensor's error be where its slow noise is not proven."""
 STATES = 5  # of a start: motor speed, wheel speed, shaft torque, and two of a motion inside the tyre
 _FAR = 1e9  # a simulation that runs away is so many standard deviations off, not infinitely many
-_SLOW_NOISE = 1.2  # times its white noise may a sensor's error be where its slow noise is not proven
 _WINDOWS = 12  # at least, by which noise is told
 _STILL = (0.25, 0.1)  # of them have that share of the mean power of the torque, in most octaves
 _RANK = 1e-7  # smallest singular value of a start's sensitivities that counts, of the largest
@@ -80,7 +81,7 @@ class Problem:
     @property
     def slow_noise(self) -> float:
         """Largest variance of block means that may be noise, in that of white noise."""
-        return 1.0 + self.series[0].block * (_SLOW_NOISE**2 - 1.0)
+        return 1.0 + self.series[0].block * (SLOW_NOISE**2 - 1.0)
 
     def noise_in(self, errors: Sequence[Array]) -> tuple[Array, Array]:
         """Mean square that is noise beyond doubt, (3,), and the most that may be noise.

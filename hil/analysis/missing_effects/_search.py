@@ -193,7 +193,7 @@ def _most_promising(done: Candidates, begun: Sequence[Candidate]) -> list[tuple[
     """Of each set of names the start that may reach most, with that score: starts of a name are no rivals."""
     found: dict[tuple[str, ...], tuple[float, Candidate]] = {}
     for one in begun:
-        may_reach = done.score(one) + done.promised(one)
+        may_reach = done.may_reach(one)
         if one.names not in found or may_reach > found[one.names][0]:
             found[one.names] = may_reach, one
     return list(found.values())

@@ -163,7 +163,7 @@ def _swapped(done: Candidates, best: Candidate, asked: Callable[[EffectUse], boo
     least = done.score(best) - ALIKE  # what is less likely decides nothing
     if done.problem.is_noise(best.point.errors):
         for one in [one for one in pool if len(one.names) == len(best.names)][: _RIVALS + 1]:
-            if one.names != best.names:
+            if one.names != best.names and done.may_reach(one) > least:
                 done.fitted(one.point.hypothesis, one, at_least=least)
         alone = [one for one in pool if len(one.names) == 1 and one.names[0] not in best.names]
         for index in range(len(best.names)) if len(best.names) > 1 else ():

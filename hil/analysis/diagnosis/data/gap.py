@@ -9,8 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.thresholds import (
-    HIGH_SPEED,
-    LARGE_TORQUE,
+    LARGE,
     REVERSAL_S,
     STANDSTILL_SHARE,
     WORSE,
@@ -134,8 +133,8 @@ def conditions_of(samples: Array, torque: Array, dt: float) -> Array:
     masks = [
         speed < STANDSTILL_SHARE * fastest,
         after,
-        np.abs(torque) > LARGE_TORQUE * largest,
-        speed > HIGH_SPEED * fastest,
+        np.abs(torque) > LARGE * largest,
+        speed > LARGE * fastest,
     ]
     left = np.ones(len(torque), bool)
     rows = []

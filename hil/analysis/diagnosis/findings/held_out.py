@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.data.gap import ChannelGap
 from hil.analysis.diagnosis.findings.result import Verdict
-from hil.analysis.diagnosis.thresholds import CHANNEL_NOISES, EVENT_NOISES, EVENT_S, SLOW_UNPROVEN
-from hil.analysis.missing_effects import Series
+from hil.analysis.diagnosis.thresholds import CHANNEL_NOISES, EVENT_NOISES, EVENT_S
+from hil.analysis.missing_effects import SLOW_NOISE, Series
 from hil.core.channels import OUTPUTS
 from hil.core.errors.wording import multiple
 
@@ -44,7 +44,7 @@ class HeldOut:
 
     def open(self, verdict: Verdict) -> tuple[str, ...]:
         """Channels that keep more than noise, or where nothing is named, more than is proven to be noise."""
-        most = SLOW_UNPROVEN if verdict == "none" else CHANNEL_NOISES
+        most = SLOW_NOISE if verdict == "none" else CHANNEL_NOISES
         return tuple(channel for channel, gap in self.after.items() if gap.noises > most)
 
     def words(self, verdict: Verdict) -> str:

@@ -56,3 +56,17 @@ def test_a_dead_time_goes_to_the_likeliest_place_within_its_sample() -> None:
     late = Hypothesis(model, {**model.parameters, "torque_delay": 8.97e-3})
     found = done.fitted(late, None)
     assert found.point.hypothesis.numbers["torque_delay"] == pytest.approx(8.1e-3, abs=0.2e-3)
+
+
+def test_a_fit_without_a_chance_ends_and_one_that_may_come_near_does_not() -> None:
+    """From three times the inertia: rounds and numbers promise the way back, to first order."""
+    model = mass(3.0 * 0.54, 2.17)
+    done = Candidates(problem_about(model, recording(0.54, 2.17)))
+    start = Hypothesis(model, dict(model.parameters))
+    whole = done.fitted(start, None)
+    done.found.clear()
+    near = done.fitted(start, None, at_least=done.score(whole) - 1.0)
+    assert done.score(near) > done.score(whole) - 1.0
+    done.found.clear()
+    hopeless = done.fitted(start, None, at_least=done.score(whole) + 1e4)
+    assert done.score(hopeless) == done.score(done.fitted(start, None, 1))
