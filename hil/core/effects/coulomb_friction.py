@@ -28,6 +28,7 @@ from hil.core.effects._probe import Values as Named
 _TURNED_S = 0.5  # a recording that begins in motion has moved so for as long, and bristles are bent by it
 _STIFFEST = 0.5  # largest phase in rad that bristles may swing through in a step
 _MOST_STEPS = 8
+_SOFT_RAD = 0.3  # friction that turns around over so much is a spring to small motion
 
 
 # Of the values
@@ -91,13 +92,14 @@ def _steady(values: Values) -> bool:
 
 
 def _probes(scene: Scene) -> Iterator[Probe]:
-    rest: Named = {"stribeck_torque_nm": 0.0, "offset_nm": 0.0, "turn_rad": 0.0}
-    for share in (0.005, 0.03, 0.1, 0.2):
-        unit = share * scene.torque_nm
-        yield Probe(
-            (Direction({"torque_nm": unit, **rest}, 0.3, 2.0),),
-            lambda a, unit=unit: {"torque_nm": float(a[0]) * unit, **rest},  # type: ignore[misc]
-        )
+    for turn_rad in (0.0, _SOFT_RAD):
+        rest: Named = {"stribeck_torque_nm": 0.0, "offset_nm": 0.0, "turn_rad": turn_rad}
+        for share in (0.005, 0.03, 0.1, 0.2):
+            unit = share * scene.torque_nm
+            yield Probe(
+                (Direction({"torque_nm": unit, **rest}, 0.3, 2.0),),
+                lambda a, unit=unit, rest=rest: {"torque_nm": float(a[0]) * unit, **rest},  # type: ignore[misc]
+            )
 
 
 def _derived(values: Mapping[str, float]) -> dict[str, float]:
