@@ -38,7 +38,8 @@ class Problem:
     `noise` (3,) is a standard deviation, `signal` (3,) a mean square of each channel, `spectrum` is what
     errors are weighed by; `scales` are sizes of numbers that may be zero, `held` numbers without effect.
     `colour` (3 x bands) is that of noise, None where it is white; `tells_noise` whether the torque differs so
-    much between windows that what all of them show is noise. Every simulation asks `allowance` first.
+    much between windows that what all of them show is noise. Of a base that is `far` off as a whole only a
+    count of teeth says something. Every simulation asks `allowance` first.
     """
 
     model: Model
@@ -51,6 +52,7 @@ class Problem:
     angles: tuple[Array, ...] = ()
     colour: Array | None = None
     tells_noise: bool = False
+    far: bool = False
     shown: Shown = field(default_factory=Shown, repr=False, compare=False)
     allowance: Allowance = UNBOUNDED
 
@@ -65,7 +67,9 @@ class Problem:
     def coordinates(self, hypothesis: Hypothesis) -> list[Coordinate]:
         """Free numbers of a hypothesis: a gear ratio is one where the wheel side was recorded."""
         return [
-            one for one in hypothesis.coordinates(self.scales) if one.term >= 0 or one.name not in self.held
+            replace(one, base=None) if self.far and one.term < 0 and one.name != "gear_ratio" else one
+            for one in hypothesis.coordinates(self.scales)
+            if one.term >= 0 or one.name not in self.held
         ]
 
     @property
@@ -275,17 +279,9 @@ class Problem:
         away = self._away(coordinates, u)
         return np.asarray(np.sign(away) * np.sqrt(2.0 * np.log1p(away**2)))
 
-    def log_prior(self, hypothesis: Hypothesis, *, far: bool = False) -> float:
-        """Log density of a hypothesis' numbers, of which the base says something.
-
-        Args:
-            far: whether most of them are not what it says: then it says nothing but a count of teeth.
-        """
-        coordinates = [
-            one
-            for one in self.coordinates(hypothesis)
-            if not far or one.term >= 0 or one.name == "gear_ratio"
-        ]
+    def log_prior(self, hypothesis: Hypothesis) -> float:
+        """Log density of a hypothesis' numbers, of which the base says something."""
+        coordinates = self.coordinates(hypothesis)
         return -0.5 * float(np.sum(self.prior(coordinates, np.zeros(len(coordinates))) ** 2))
 
     def prior_slopes(self, coordinates: Sequence[Coordinate], u: Array) -> Array:

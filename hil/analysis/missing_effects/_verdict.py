@@ -79,13 +79,14 @@ def judged(of: Judged) -> Outcome:
     near_noise = done.problem.is_noise(best.point.errors)
     if near_noise and done.score(likelier) > done.score(best):
         best, at, shares = _worth_telling(of, likelier)
+    if is_far(numbers_of(at, of.asked), done):
+        best, at = _from_far(done, best)
     candidates = list(done.found.values())
     if near_noise and best.names:  # more names than are worth telling decide nothing
         candidates = [one for one in candidates if len(one.names) <= len(best.names)]
     values = done.problem.powers(best.point.errors, once=True).values(done.problem.noise)
     numbers = numbers_of(at, of.asked)
-    far = is_far(numbers, done)
-    weights = _weights(done.problem, candidates, values, far=far)
+    weights = _weights(done.problem, candidates, values)
     rivals = _alike(done, best, candidates, weights)
     effects: list[Named] = []
     doubtful: list[Named] = []
@@ -106,7 +107,7 @@ def judged(of: Judged) -> Outcome:
     given, steadied = best.point.hypothesis, held_against_drift(done.problem, best.point)
     model = (given.with_term(steadied) if steadied else given).model()
     return Outcome(
-        verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), numbers, far,
+        verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), numbers, done.problem.far,
         model, done.found[()].point.hypothesis.model(),
         curves_of(best.point.hypothesis, of.fitted), 0.0,
         done.problem.noise * np.sqrt(done.problem.series[0].block), at.drawn(_DRAWN), of.fitted, of.held_out,
@@ -114,16 +115,26 @@ def judged(of: Judged) -> Outcome:
     )  # fmt: skip
 
 
-def _weights(problem: Problem, candidates: Sequence[Candidate], values: float, *, far: bool = False) -> Array:
+def _from_far(done: Candidates, best: Candidate) -> tuple[Candidate, Linearised]:
+    """Fitted without the base's word on its numbers, but for teeth: it is far off as a whole.
+
+    One of them that the data leave free would hold those that follow from it, a gain or a count of teeth.
+    """
+    done.problem = replace(done.problem, far=True)
+    settled = done.judged(fit(done.weighed_as(best), best.point))
+    best = max(done.judged(best.point), settled, key=done.score)
+    done.found[tuple(sorted(best.names))] = best
+    return best, linearised(done.weighed_as(best, once=True), best.point)
+
+
+def _weights(problem: Problem, candidates: Sequence[Candidate], values: float) -> Array:
     """Posterior weight of each candidate; what a repeated torque shows again and again counts once.
 
     A fit may use every window of it, as a composite likelihood; odds may not (C. Varin, N. Reid, D. Firth,
     Statistica Sinica 21 (2011) 5). Nor may a base decide whose numbers are far off.
     """
-    if far:
-        candidates = [
-            replace(one, prior=problem.log_prior(one.point.hypothesis, far=True)) for one in candidates
-        ]
+    if problem.far:
+        candidates = [replace(one, prior=problem.log_prior(one.point.hypothesis)) for one in candidates]
     once = (problem.powers(one.point.errors, once=True) for one in candidates)
     windows = np.stack([one.log_likelihood(problem.noise) for one in once])
     return weights_of(candidates, windows, values)
@@ -131,7 +142,8 @@ def _weights(problem: Problem, candidates: Sequence[Candidate], values: float, *
 
 def _may_be_off(of: Judged, at: Linearised) -> bool:
     """Whether single numbers of the base may be wrong: what has no name bends them, a far base has none."""
-    return of.done.problem.is_noise(at.point.errors) and not is_far(numbers_of(at, of.asked), of.done)
+    far = of.done.problem.far or is_far(numbers_of(at, of.asked), of.done)
+    return of.done.problem.is_noise(at.point.errors) and not far
 
 
 def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, Linearised, list[float]]:

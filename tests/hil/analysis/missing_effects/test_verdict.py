@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from hil.analysis.missing_effects._candidates import Candidates
-from hil.analysis.missing_effects._fit import point_at
+from hil.analysis.missing_effects._fit import linearised, point_at
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._share import Judged, _remains
-from hil.analysis.missing_effects._verdict import _alike
-from hil.core.model import EffectUse
-from tests.hil.analysis.missing_effects.chain import problem_about
+from hil.analysis.missing_effects._verdict import _alike, _from_far
+from hil.core.model import EffectUse, Model
+from tests.hil.analysis.missing_effects.chain import RIGID, driven, problem_about
 from tests.hil.analysis.missing_effects.two_masses import base, braked
 
 _ROLLING = EffectUse("running_resistance", {"rolling_nm": 0.4, "aero_nms2_rad2": 0.007})
@@ -57,3 +57,24 @@ def test_names_are_alike_where_one_is_in_the_place_of_the_other_at_odds_below_tw
     }
     certain = np.array([0.96, 0.0, 0.004, 0.036])
     assert _alike(done, found[0], found, certain) == {}
+
+
+def test_beside_a_far_base_a_gain_is_as_doubtful_as_what_it_hangs_on() -> None:
+    """Of a rigid axle the motor's inertia, teeth, load and a speed's gain leave one direction free.
+
+    The base's word on the inertia, which is 40 % off, would settle it, and the gain with it.
+    """
+    truth = Model("rigid", RIGID)
+    model = truth.with_parameters(
+        motor_inertia=0.6 * RIGID["motor_inertia"], vehicle_inertia=0.7 * RIGID["vehicle_inertia"]
+    )
+    gain = EffectUse("sensor_gain", {"channel": "wheel_speed_rad_s", "gain": 1.3})
+    time = np.arange(12_000) * 1e-3
+    torque = 40.0 * np.sign(np.sin(2.0 * np.pi * 0.3 * time)) + 10.0 * np.sin(2.0 * np.pi * 5.0 * time)
+    done = Candidates(problem_about(model, driven(truth.with_effects(gain), torque, 0.01)))
+    best = done.fitted(Hypothesis(model, dict(model.parameters)).with_term(gain), None)
+    sure = linearised(done.weighed_as(best), best.point).standard_error(0, "gain")
+    found, at = _from_far(done, best)
+    doubt = at.standard_error(0, "gain")
+    assert doubt > 5.0 * sure
+    assert abs(float(found.point.hypothesis.terms[0].values["gain"]) - 1.3) < 3.0 * doubt
