@@ -216,7 +216,7 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, l
     chain, acting = chain_of(p), acting_of(p)
     turns, leaps, limits = L.turns(p), L.leaps(p), L.limits(p)
     reach = L.steepest(p) * h * substeps
-    given = slewed = L.limited(asked[max(-whole, 0)], relative_speed(x), p)
+    given = slewed = L.limited(asked[0], relative_speed(x), p)
     known = varies == BY_ANGLE and angles.shape[0] > 0  # forces are, before the motion is
     gain = held[F.LOSS, X.HOUSING_SPEED] - held[F.LOSS, X.ROTOR_SPEED]
     friction = 0.0

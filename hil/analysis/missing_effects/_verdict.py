@@ -18,7 +18,6 @@ from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._curve import curves_of
 from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised, point_at
 from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of
-from hil.analysis.missing_effects._lasting import held_against_drift
 from hil.analysis.missing_effects._mismatch import (
     as_the_base_has,
     gains_instead,
@@ -31,7 +30,14 @@ from hil.analysis.missing_effects._outcome import Named, Outcome, Verdict
 from hil.analysis.missing_effects._phase import errors_of
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._search import HALF, is_loss
-from hil.analysis.missing_effects._share import LAW, Judged, is_linear, share_of, wrong_by_laws
+from hil.analysis.missing_effects._share import (
+    LAW,
+    Judged,
+    held_against_drift,
+    is_linear,
+    share_of,
+    wrong_by_laws,
+)
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse

@@ -7,10 +7,10 @@ import pytest
 
 from hil.analysis.missing_effects._fit import fit, linearised, point_at
 from hil.analysis.missing_effects._hypothesis import Hypothesis
-from hil.analysis.missing_effects._lasting import constancy
 from hil.analysis.missing_effects._noise import proven_noise
 from hil.analysis.missing_effects._problem import problem_of
 from hil.analysis.missing_effects._series import series_of
+from hil.analysis.missing_effects._share import constancy
 from hil.core.channels import INPUT
 from hil.core.model import EffectUse
 from hil.core.recording import Recording

@@ -9,8 +9,8 @@ import pytest
 
 from hil.analysis.missing_effects._fit import point_at, with_better_starts
 from hil.analysis.missing_effects._hypothesis import Hypothesis
-from hil.analysis.missing_effects._lasting import held_against_drift
 from hil.analysis.missing_effects._problem import Problem
+from hil.analysis.missing_effects._share import held_against_drift
 from hil.core.model import EffectUse
 from tests.hil.analysis.missing_effects.chain import chirp_problem, multisine_problem
 
