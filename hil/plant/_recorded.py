@@ -85,7 +85,7 @@ def settled(
     begins = [first + share * unread for share in (_AHEAD if unread.any() else _AHEAD[:1])]
     ends = [_least(first, unsure, steps, away, np.where(there, 1.0, 0.0), one) for one in begins]
     squares = np.mean(away(np.stack(ends)) ** 2, axis=1)
-    nearest = int(np.argmin(np.sum(squares, axis=1)))
+    nearest = int(np.argmin(np.maximum(np.sum(squares, axis=1), _SETTLED)))  # digits tell none from another
     start, misfit = ends[nearest], np.maximum(squares[nearest], 1.0)
     counts = 1.0 / (1.0 + (misfit - 1.0) * len(measured) / _VALUES)
     unsure = np.hypot(errors, unrecorded / np.max(misfit))  # of a wrong model it would take up the misfit
@@ -116,6 +116,8 @@ def _least(
     start = start.astype(float)
     left = rows(start[None])[0]
     for _ in range(_ROUNDS):
+        if left @ left < _SETTLED * len(left):
+            break  # a thousandth of the noise: digits of the equations
         slopes = (rows(start + np.diag(steps)[free]) - left) / steps[free, None]
         step = np.zeros(len(start))
         step[free] = -np.linalg.lstsq(slopes.T, left, rcond=None)[0]

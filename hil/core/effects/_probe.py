@@ -91,6 +91,15 @@ def sized(name: str, size: float, lower: float = STRETCH[0], **others: float | s
     return scaled(name, size, lower, STRETCH[1], **others)
 
 
+def clipped(name: str, most: float) -> Iterator[Probe]:
+    """Limits of something that reaches `most`; a response goes about with what a limit cuts off."""
+    for share in (0.97, 0.92, 0.85, 0.75, 0.65, 0.55, 0.45, 0.35, 0.25):
+        yield Probe(
+            (Direction({name: share * most}, *STRETCH),),
+            lambda a, share=share: {name: max(1.0 - float(a[0]) * (1.0 - share), 0.05) * most},  # type: ignore[misc]
+        )
+
+
 def ripple(order: float, unit: float) -> Probe:
     """A torque of `unit` N m that follows an angle, of any phase."""
     sine: Values = {"order": order, "amplitude_nm": unit, "phase_rad": 0.0}

@@ -19,7 +19,7 @@ from typing import Any
 from hil.core.chain import Chain
 from hil.core.effects._effect import Effect, Parameter, Stage
 from hil.core.effects._law import Law, Values
-from hil.core.effects._probe import STRETCH, Direction, Probe, Scene
+from hil.core.effects._probe import Probe, Scene, clipped
 
 _STANDS_RAD_S = 1e-3  # below, no power limits a torque
 _ANY_NM = 1e6  # a peak torque that is not known limits nothing
@@ -45,14 +45,9 @@ def _limit(torque: float, speed: float, values: Values) -> float:
 
 
 def _probes(scene: Scene) -> Iterator[Probe]:
-    for share in (0.97, 0.92, 0.85, 0.75, 0.65, 0.55, 0.45, 0.35, 0.25) if scene.power_w > 0.0 else ():
-        yield _clipped(scene.power_w, share)
-
-
-def _clipped(power: float, share: float) -> Probe:
-    """A limit of the power alone; its response goes about with what it cuts off."""
-    direction = Direction({"power_w": share * power}, *STRETCH)
-    return Probe((direction,), lambda a: {"power_w": max(1.0 - float(a[0]) * (1.0 - share), 0.05) * power})
+    """Of the power alone."""
+    if scene.power_w > 0.0:
+        yield from clipped("power_w", scene.power_w)
 
 
 def _together(values: Mapping[str, Any], others: Mapping[str, Mapping[str, Any]]) -> tuple[str, str] | None:

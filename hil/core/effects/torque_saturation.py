@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from hil.core.effects._effect import Effect, Parameter, Stage
 from hil.core.effects._law import Law, Values
-from hil.core.effects._probe import STRETCH, Direction, Probe, Scene
+from hil.core.effects._probe import Probe, Scene, clipped
 
 
 def _clip(torque: float, values: Values) -> float:
@@ -16,14 +16,7 @@ def _clip(torque: float, values: Values) -> float:
 
 
 def _probes(scene: Scene) -> Iterator[Probe]:
-    for share in (0.97, 0.92, 0.85, 0.75, 0.65, 0.55, 0.45, 0.35, 0.25):
-        yield _clipped(scene.torque_nm, share)
-
-
-def _clipped(torque: float, share: float) -> Probe:
-    """A saturation; its response goes about with what it cuts off."""
-    direction = Direction({"limit_nm": share * torque}, *STRETCH)
-    return Probe((direction,), lambda a: {"limit_nm": max(1.0 - float(a[0]) * (1.0 - share), 0.05) * torque})
+    yield from clipped("limit_nm", scene.torque_nm)
 
 
 EFFECT = Effect(

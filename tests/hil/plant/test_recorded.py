@@ -97,7 +97,7 @@ def test_a_channel_that_was_not_recorded_has_no_beginning() -> None:
     ],
 )
 def test_starts_are_looked_for_by_what_a_replay_shows_from_them(effects: tuple[EffectUse, ...]) -> None:
-    """Models for which the equations for many at once hold, and one for which they do not."""
+    """By the equations for many models at once, of which a replay itself is no part."""
     model = CHAIN.with_effects(*effects)
     torque = 10.0 * np.sin(0.02 * np.arange(500))
     starts = [Start(41.0, 5.3, 17.0, 0.0), Start(40.0, 4.0, 10.0, 0.0)]

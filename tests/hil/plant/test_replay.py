@@ -329,12 +329,11 @@ def recording(time, torque, **outputs):
 
 
 def test_replay_gives_back_a_recording_of_the_same_model():
-    """To the last digits: where it begins is found by the equations for many models at once."""
     torque = step()
     truth = simulate(THREE, torque, DT, Start(100.0, 100.0 / P["gear_ratio"]))
     got = replay(THREE, recording(10.0 + np.arange(3000) * DT, torque, **truth))
     for name in ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm"):
-        np.testing.assert_allclose(got[name], truth[name], rtol=0.0, atol=1e-11 * np.max(np.abs(truth[name])))
+        np.testing.assert_allclose(got[name], truth[name], rtol=1e-12)
 
 
 @pytest.mark.parametrize(
