@@ -88,15 +88,17 @@ class _Walk:
         return without(self.basis, self.problem.weighed(self.index, one.measured - shown)[0])
 
     def variance_a_second(self, side: Side) -> float:
-        """Of the walk of an integrated speed with noise, rad²/s; next to none of an angle."""
+        """Of the walk of an integrated speed with noise, rad²/s; next to none of an angle.
+
+        A side's angle is that of its own speed, where it was recorded.
+        """
+        own = 1 - _COLUMNS[side]
         ratio = gear_ratio_of(self.point.hypothesis.model()) or 1.0
-        onto = np.array([1.0, ratio]) if side == "rotor" else np.array([1.0 / ratio, 1.0])
-        recorded = np.isfinite(self.one.samples[0, :2])
-        square = self.problem.slowest_noise(self.point.errors)[:2]
-        noise = np.where(recorded, np.sqrt(square) * onto, np.inf)
-        if self.one.of_angle.any():
-            noise[:2][self.one.of_angle[:2]] *= _NO_WALK
-        return float(np.min(noise) ** 2 * self.one.block * self.one.dt)
+        noise = np.sqrt(self.problem.slowest_noise(self.point.errors)[:2])
+        noise[self.one.of_angle[:2]] *= _NO_WALK
+        if not np.isfinite(self.one.samples[0, own]):
+            own, noise = 1 - own, noise * [1.0 / ratio, ratio]
+        return float(noise[own] ** 2 * self.one.block * self.one.dt)
 
 
 _Linear = tuple[Array, Array]
@@ -118,18 +120,17 @@ class _Followed:
             knots = max(2, round(count * dt / _KNOTS_S) + 1)
             turned = np.interp(np.linspace(0.0, count - 1.0, knots), np.arange(count), angles[:, self.column])
             rate = walk.variance_a_second(side) * count * dt / (knots - 1)
-            steps = np.diff(np.eye(knots), axis=0)[:, 1:] / np.sqrt(rate)  # an angle is known where it begins
             self.hats.append(_hats(count, knots))
             self.along.append(np.stack([turned, np.ones(knots)]))
-            self.priors.append(steps.T @ steps)
-        self.knots = [np.zeros(len(one) - 1) for one in self.hats]
+            self.priors.append(np.linalg.inv(rate * _strayed(knots)))
+        self.knots = [np.zeros(len(one)) for one in self.hats]
         self.shared = np.zeros(2)
         self.left = problem.each(lambda index: walks[index].left(begun[index]))
 
     def angles(self, index: int, knots: Array, shared: Array) -> Array:
         """Of a recording that walk so, with what order and phase do."""
         moved = self.begun[index].copy()
-        at = np.concatenate([[0.0], knots]) + shared @ self.along[index]
+        at = knots + shared @ self.along[index]
         moved[:, self.column] += at @ self.hats[index]
         return moved
 
@@ -168,9 +169,9 @@ class _Followed:
         for (left, slopes), along, prior, knots in zip(
             linear, self.along, self.priors, self.knots, strict=True
         ):
-            shared, own = along @ slopes, slopes[1:]
-            inverse = np.linalg.inv(own @ own.T + prior)
-            right, both = own @ left + prior @ knots, own @ shared.T
+            shared = along @ slopes
+            inverse = np.linalg.inv(slopes @ slopes.T + prior)
+            right, both = slopes @ left + prior @ knots, slopes @ shared.T
             normal += shared @ shared.T - both.T @ inverse @ both
             gradient += shared @ left - both.T @ inverse @ right
             parts.append((inverse, right, both))
@@ -180,6 +181,16 @@ class _Followed:
 
     def _prior(self, knots: Sequence[Array]) -> float:
         return sum(0.5 * float(one @ prior @ one) for one, prior in zip(knots, self.priors, strict=True))
+
+
+def _strayed(knots: int) -> Array:
+    """Covariance at knots of a random walk that is known where it begins, of one from a knot to the next.
+
+    What shows an angle only somewhere between two knots tells these less: there a walk strays from the
+    straight line by a sixth in the mean (the variance of a Brownian bridge).
+    """
+    each = np.arange(knots, dtype=float)
+    return np.asarray(np.minimum(each[:, None], each) + np.eye(knots) / 6.0)
 
 
 def _hats(count: int, knots: int) -> Array:
