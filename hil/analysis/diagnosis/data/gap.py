@@ -9,11 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.thresholds import (
+    FAR_NOISES,
     LARGE,
-    REVERSAL_S,
+    MOMENT_S,
     STANDSTILL_SHARE,
-    WORSE,
-    WORSE_NOISES,
+    VISIBLE,
 )
 from hil.analysis.missing_effects import Series
 from hil.core.channels import OUTPUTS
@@ -96,7 +96,7 @@ def gap_map(traces: Sequence[Series], noise: Array, simulated: Sequence[Array]) 
 
 def made_worse(before: GapMap, after: GapMap) -> list[str]:
     """In words where the error grew: channel, band and recording, worst first."""
-    grown = np.nan_to_num(after.by_band) > np.maximum(WORSE_NOISES, WORSE * np.nan_to_num(before.by_band))
+    grown = np.nan_to_num(after.by_band) > np.maximum(FAR_NOISES, VISIBLE * np.nan_to_num(before.by_band))
     places = sorted(np.argwhere(grown).tolist(), key=lambda place: -after.by_band[tuple(place)])
     words = []
     for row, column, band in places:
@@ -128,7 +128,7 @@ def conditions_of(samples: Array, torque: Array, dt: float) -> Array:
     flips = np.flatnonzero(np.diff(np.sign(torque)) != 0)
     near_flip = np.zeros(len(torque))
     near_flip[flips] = 1.0
-    reach = max(1, round(REVERSAL_S / dt))
+    reach = max(1, round(MOMENT_S / dt))
     after = np.convolve(near_flip, np.ones(reach))[: len(torque)] > 0
     masks = [
         speed < STANDSTILL_SHARE * fastest,

@@ -15,17 +15,15 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.thresholds import (
     FREEZE_WINDOWS_S,
-    FROZEN_S,
-    HELD_STEPS,
     HOLDS_SHARE,
     LIKELIER,
-    MOVES,
+    MOMENT_S,
     PLATEAU_SAMPLES,
     PLAY_RAD,
-    SLOW_S,
-    STEEP,
+    STEPS,
     TORQUE_MOVES,
     TURNS_ON,
+    VISIBLE,
 )
 from hil.analysis.missing_effects import Series, block_means
 from hil.analysis.stretches import runs
@@ -94,12 +92,12 @@ def _dead(one: Series, column: int, model: Model, noise: Array, others: Sequence
         ratio = gear_ratio_of(model) or 1.0
         other = one.measured[:, 1 - column] * (ratio if column == 0 else 1.0 / ratio)
         turned = np.cumsum(other) / one.rate_hz / (ratio if column == 0 else 1.0)
-        step = HELD_STEPS * np.sqrt(12.0) * noise[column] if others else 0.0
+        step = STEPS * np.sqrt(12.0) * noise[column] if others else 0.0
         dead = bool(np.ptp(_slow(other, one.rate_hz)) > step and np.std(around(1, turned)) > PLAY_RAD)
     else:  # alone it stands still by friction, but not under more torque than has moved it from there
         step = np.sqrt(12.0) * noise[column]
         began = [s for s in others if abs(s.samples[0, column] - value) <= step]
-        moved = [s for s in began if np.ptp(s.samples[:, column]) > HELD_STEPS * step]
+        moved = [s for s in began if np.ptp(s.samples[:, column]) > STEPS * step]
         dead = any(np.max(np.abs(s.torque)) < torque for s in moved)
     if dead:
         raise BadInputError(
@@ -111,7 +109,7 @@ def _dead(one: Series, column: int, model: Model, noise: Array, others: Sequence
 
 def moves(one: Series, column: int, noise: Array) -> bool:
     """Whether a channel does more than read noise."""
-    return bool(one.has[column] and np.std(one.measured[:, column]) > MOVES * noise[column])
+    return bool(one.has[column] and np.std(one.measured[:, column]) > VISIBLE * noise[column])
 
 
 def _same_for_long(one: Series, column: int, reading: _Reading) -> None:
@@ -126,7 +124,7 @@ def _same_for_long(one: Series, column: int, reading: _Reading) -> None:
     often = np.count_nonzero(reading.values[reading.held[:, 0]] == value) > 1
     if often and value in (np.min(reading.values), np.max(reading.values)):
         raise _clipped_error(one, column, value)
-    if (end - begin) * one.dt > FROZEN_S:  # less may be a telegram that was lost
+    if (end - begin) * one.dt > MOMENT_S:  # less may be a telegram that was lost
         raise _frozen_error(one, column, begin, end, "")
 
 
@@ -142,7 +140,7 @@ def _clipped(one: Series, column: int, reading: _Reading) -> None:
             swings = [np.ptp(one.torque[a : max(b - reach, a + 1)]) for a, b in zip(first, last, strict=True)]
             long &= np.array(swings) > TORQUE_MOVES * np.ptp(one.torque)
         steep = np.minimum(np.abs(values[first - reach] - end), np.abs(values[last + reach - 1] - end))
-        if np.any(long & (steep > STEEP * finest)):
+        if np.any(long & (steep > STEPS * finest)):
             raise _clipped_error(one, column, end)
 
 
@@ -213,7 +211,7 @@ def around(degree: int, values: Array) -> Array:
 
 
 def _slow(values: Array, rate_hz: float) -> Array:
-    count = max(1, round(SLOW_S * rate_hz))
+    count = max(1, round(MOMENT_S * rate_hz))
     return np.convolve(values, np.ones(count) / count, "valid")
 
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.data.held import moves, refuse_held
 from hil.analysis.diagnosis.data.mistakes import mistaken
-from hil.analysis.diagnosis.thresholds import SLOW_S, SPEEDS_UP
+from hil.analysis.diagnosis.thresholds import MOMENT_S, STANDSTILL_SHARE
 from hil.analysis.missing_effects import Series, block_means, proven_noise, series_of
 from hil.analysis.plausible import refuse_implausible
 from hil.core.channels import INPUT, OUTPUTS
@@ -102,11 +102,11 @@ def _refuse_motionless(model: Model, series: Sequence[Series], noise: Array) -> 
 
 def _slows_down(one: Series, noise: Array) -> bool:
     """Whether no speed grows in magnitude by more than noise: the axle coasts."""
-    length = max(1, round(SLOW_S * one.rate_hz))
+    length = max(1, round(MOMENT_S * one.rate_hz))
     for column in np.flatnonzero(one.has[:2]).tolist():
         count = len(one.measured) // length
         slow = np.abs(one.measured[: count * length, column].reshape(count, length).mean(axis=1))
         risen = slow - np.minimum.accumulate(slow)
-        if count and np.max(risen) > max(5.0 * noise[column], SPEEDS_UP * np.max(slow)):
+        if count and np.max(risen) > max(5.0 * noise[column], STANDSTILL_SHARE * np.max(slow)):
             return False
     return True

@@ -30,15 +30,14 @@ from hil.analysis.diagnosis.findings.result import (
     Verdict,
     as_corrections,
 )
-from hil.analysis.diagnosis.findings.separating import plan_file, plan_within_recordings, worth_a_plan
-from hil.analysis.diagnosis.thresholds import CHANNEL_NOISES
+from hil.analysis.diagnosis.findings.separating import most_of, plan_file, separating_plan, worth_a_plan
+from hil.analysis.diagnosis.thresholds import VISIBLE
 from hil.analysis.missing_effects import OUT_OF_TIME, Curve, Named, Outcome, Replay, Series
 from hil.core.channels import ANGLES, OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.errors.wording import multiple, share
 from hil.core.model import EffectUse, Model
 from hil.core.runtime.thread_map import map_on_threads
-from hil.plant import gear_ratio_of
 
 Array = npt.NDArray[np.float64]
 
@@ -242,7 +241,7 @@ def _remaining(found: Outcome, shown: _Shown) -> str:
 
 
 def _open(gaps: Mapping[str, ChannelGap]) -> tuple[str, ...]:
-    return tuple(channel for channel, gap in gaps.items() if gap.noises > CHANNEL_NOISES)
+    return tuple(channel for channel, gap in gaps.items() if gap.noises > VISIBLE)
 
 
 def _numbers(found: Outcome, shown: _Shown) -> tuple[Start | None, dict[str, tuple[float, float, float]]]:
@@ -263,7 +262,7 @@ def _alternatives(found: Outcome, shown: _Shown, small: Collection[str]) -> tupl
     """
     first = found.effects[0].id if found.effects else "numbers"
     shared = {name: one.confidence for one in found.effects for name in one.alike}
-    ratio = gear_ratio_of(found.model) or 1.0
+    most = most_of(shown.traces, shown.after_samples)
     others = []
     for one in found.alternatives:
         label = EFFECTS[one.id].label(one.use.values)
@@ -271,10 +270,8 @@ def _alternatives(found: Outcome, shown: _Shown, small: Collection[str]) -> tupl
         if label in small or (found.effects and not round(confidence, 2)):
             continue  # it would be shown as 0
         text, plan = one.separating_test or EFFECTS[one.id].shown_by, ""
-        if one.model is not None and worth_a_plan(confidence, shown.traces):
-            text, plan = plan_within_recordings(
-                found.model, one.model, found.noise, shown.traces, ratio, (first, one.id)
-            )
+        if one.model is not None and worth_a_plan(confidence, most):
+            text, plan = separating_plan(found.model, one.model, found.noise, most, (first, one.id))
         name = plan_file(one.use) if plan else None
         others.append(Alternative(one.use, confidence, text, name, plan or None))
     return tuple(others)

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis.thresholds import LASTING, NUMBERS_FREE, NUMBERS_STEP, STEP_FROM_RAD_S, STEP_NM
+from hil.analysis.diagnosis.thresholds import LASTING, NUMBERS_FREE, STEP_FROM_RAD_S, STEP_NM
 from hil.core.channels import COMFORT_BAND_HZ, OUTPUTS, TICK_S
 from hil.core.model import Model, parameter_names
 from hil.plant import SENSOR_STEP, gear_ratio_of, pack, sensor_of, simulate_many
@@ -46,7 +46,7 @@ def apart(one: Model, other: Model, played: Callable[[Sequence[Model]], Array], 
         noise: standard deviation of each channel per sample.
     """
     first, second, *moved = played([one, other, *_moved(one)]) / noise
-    columns = [np.ravel((shown - first) / NUMBERS_STEP) for shown in moved]
+    columns = [np.ravel((shown - first) / NUMBERS_FREE) for shown in moved]
     starts = np.eye(first.shape[1])  # an initial speed that no one knows shifts a channel
     columns += [np.ravel(np.broadcast_to(channel, first.shape)) for channel in starts]
     rows = np.nan_to_num(np.column_stack(columns))
@@ -66,11 +66,11 @@ def _moved(one: Model) -> Iterator[Model]:
     """The model with one number a little larger: of its base, of its effects."""
     for name in parameter_names(one.kind):
         if value := one.parameters[name]:
-            yield one.with_parameters(**{name: value * (1.0 + NUMBERS_STEP)})
+            yield one.with_parameters(**{name: value * (1.0 + NUMBERS_FREE)})
     for index, use in enumerate(one.effects):
         for name, number in use.values.items():
             if not isinstance(number, str) and number:
-                larger = replace(use, values={**use.values, name: number * (1.0 + NUMBERS_STEP)})
+                larger = replace(use, values={**use.values, name: number * (1.0 + NUMBERS_FREE)})
                 yield one.with_effects(*(larger if i == index else u for i, u in enumerate(one.effects)))
 
 

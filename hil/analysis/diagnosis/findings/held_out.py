@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.data.gap import ChannelGap
 from hil.analysis.diagnosis.findings.result import Verdict
-from hil.analysis.diagnosis.thresholds import CHANNEL_NOISES, EVENT_NOISES, EVENT_S
+from hil.analysis.diagnosis.thresholds import FAR_NOISES, MOMENT_S, VISIBLE
 from hil.analysis.missing_effects import SLOW_NOISE, Series
 from hil.core.channels import OUTPUTS
 from hil.core.errors.wording import multiple
@@ -26,7 +26,7 @@ _WHAT_TO_DO = (
 
 @dataclass(frozen=True)
 class Event:
-    """The moment at which a held-out recording is furthest off: rms over `EVENT_S` in noise levels."""
+    """The moment at which a held-out recording is furthest off: rms over `MOMENT_S` in noise levels."""
 
     channel: str
     recording: str
@@ -44,7 +44,7 @@ class HeldOut:
 
     def open(self, verdict: Verdict) -> tuple[str, ...]:
         """Channels that keep more than noise, or where nothing is named, more than is proven to be noise."""
-        most = SLOW_NOISE if verdict == "none" else CHANNEL_NOISES
+        most = SLOW_NOISE if verdict == "none" else VISIBLE
         return tuple(channel for channel, gap in self.after.items() if gap.noises > most)
 
     def words(self, verdict: Verdict) -> str:
@@ -59,7 +59,7 @@ class HeldOut:
         if channels := self.open(verdict):
             kept = ", ".join(f"{multiple(self.after[c].noises)} its noise in {c}" for c in channels)
             lines.append(f"held-out recordings leave {kept}")
-        if verdict == "none" and self.event is not None and self.event.noises > EVENT_NOISES:
+        if verdict == "none" and self.event is not None and self.event.noises > FAR_NOISES:
             e = self.event
             lines.append(
                 f"held-out recording {e.recording} is off by {multiple(e.noises)} the noise in {e.channel} "
@@ -72,7 +72,7 @@ def furthest(traces: Sequence[Series], noise: Array, simulated: Sequence[Array])
     """Where simulated channels (n x 3 each recording) are furthest off for a moment, in `noise` (3,)."""
     found = None
     for trace, values in zip(traces, simulated, strict=True):
-        length = max(1, round(EVENT_S / trace.dt))
+        length = max(1, round(MOMENT_S / trace.dt))
         error = (trace.samples - values) / noise
         count = len(error) // length
         power = np.mean(error[: count * length].reshape(count, length, 3) ** 2, axis=1)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -19,10 +19,7 @@ from hil.analysis.diagnosis.findings.consequences import apart, played
 from hil.analysis.diagnosis.thresholds import (
     DURATION_S,
     FAST_KM_H,
-    FAST_RAD_S,
-    LEAST_TORQUE_NM,
     SETTLE_S,
-    SHAFT_SHARE,
     SHARES,
     SLOW_KM_H,
     TELLS,
@@ -33,7 +30,6 @@ from hil.analysis.missing_effects import Series
 from hil.core.channels import OUTPUTS, unit_of
 from hil.core.errors.wording import multiple, quantity
 from hil.core.model import EffectUse, Model
-from hil.plant import gear_ratio_of
 from test_plans import Plan, plan_from_text
 from test_plans.steps import SAMPLE_TIME_S, Excitation, HoldSpeed
 
@@ -61,28 +57,27 @@ class _Test:
     speed: float
 
 
+class Most(NamedTuple):
+    """Largest torque request in N m, wheel speed in rad/s and shaft torque in N m that a test may reach."""
+
+    torque_nm: float
+    speed_rad_s: float
+    shaft_torque_nm: float
+
+
 NO_TEST = "no test is predicted"
 """So begins what is said in place of one."""
 
 
 def separating_plan(
-    one: Model,
-    other: Model,
-    noise: Array,
-    torque_nm: float,
-    names: tuple[str, str],
-    *,
-    speed_rad_s: float = FAST_RAD_S,
-    shaft_torque_nm: float | None = None,
+    one: Model, other: Model, noise: Array, most: Most, names: tuple[str, str]
 ) -> tuple[str, str]:
     """Text in words, and a plan file, of the test at which two models differ most against the noise.
 
     Args:
         noise: standard deviation of each output per sample, shape (3,); NaN for one that is not measured.
-        torque_nm: largest torque request to use, N m; the recordings' own, so within the bench's limits.
+        most: what either model may reach.
         names: ids of the two effects.
-        speed_rad_s: largest wheel speed that either model may reach.
-        shaft_torque_nm: largest shaft torque that either model may reach; a share of the torque if None.
 
     Returns:
         the plan is empty where no test would tell the two apart, or where the models take their load from
@@ -90,14 +85,12 @@ def separating_plan(
     """
     if one.load_input:
         return f"{NO_TEST}: the models do not hold what makes {one.load_input}", ""
-    ratio = gear_ratio_of(one) or 1.0
-    most_shaft = SHAFT_SHARE * ratio * torque_nm if shaft_torque_nm is None else shaft_torque_nm
     candidates = []
     for name in _WORDS:
         for share in SHARES:
-            test = _test(name, share * torque_nm, names)
+            test = _test(name, share * most.torque_nm, names)
             a, b = _outputs(test, (one, other))
-            if all(_within(o, speed_rad_s, most_shaft) for o in (a, b)):
+            if all(_within(o, most) for o in (a, b)):
                 candidates.append((_rms(((a - b) / noise)[:, np.isfinite(noise)]), test))
                 break
     levels, chosen = _best(one, other, candidates, noise)
@@ -111,44 +104,29 @@ def separating_plan(
     return f"{_WORDS[chosen.name]}, up to {peak:.3g} N m: {_difference(levels, noise)}", chosen.text
 
 
-def worth_a_plan(confidence: float, traces: Sequence[Series]) -> bool:
+def worth_a_plan(confidence: float, most: Most) -> bool:
     """Whether a rival is likely enough; without torque in the recordings no one knows what a test may ask."""
-    return confidence > WORTH_A_PLAN and _largest_torque(traces) > LEAST_TORQUE_NM
+    return confidence > WORTH_A_PLAN and most.torque_nm > 0.0
 
 
-def plan_within_recordings(
-    one: Model,
-    other: Model,
-    noise: Array,
-    traces: Sequence[Series],
-    gear_ratio: float,
-    names: tuple[str, str],
-) -> tuple[str, str]:
-    """The `separating_plan` that asks for no more torque, speed and shaft torque than the recordings have."""
-    return separating_plan(
-        one,
-        other,
-        noise,
-        _largest_torque(traces),
-        names,
-        speed_rad_s=max(_largest(traces, 1), _largest(traces, 0) / gear_ratio),
-        shaft_torque_nm=_largest(traces, 2) or None,
-    )
+def most_of(traces: Sequence[Series], simulated: Sequence[Array]) -> Most:
+    """What recordings reached, so that it is within the bench's limits: as measured, or else as simulated.
+
+    Args:
+        simulated: channels of each recording, n x 3.
+    """
+    reached = [
+        np.max(np.abs(np.where(one.has, one.samples, shown)), axis=0)
+        for one, shown in zip(traces, simulated, strict=True)
+    ]
+    _, wheel, shaft = np.max(reached, axis=0).tolist()
+    return Most(max(float(np.max(np.abs(one.torque))) for one in traces), wheel, shaft)
 
 
 def plan_file(use: EffectUse) -> str:
     """Name of the plan that separates an effect from what is given back."""
     about = use.values.get("channel", use.values.get("parameter", ""))
     return "_".join(part for part in ("separate", use.id, str(about)) if part) + ".yaml"
-
-
-def _largest_torque(traces: Sequence[Series]) -> float:
-    return max(float(np.max(np.abs(t.torque))) for t in traces)
-
-
-def _largest(traces: Sequence[Series], column: int) -> float:
-    """Largest value of a channel in the recordings, 0 where it was not measured."""
-    return max(float(np.max(np.abs(np.nan_to_num(t.measured[:, column])))) for t in traces)
 
 
 def _difference(levels: Array, noise: Array) -> str:
@@ -196,11 +174,9 @@ def _rms(errors: Array) -> float:
     return float(np.sqrt(np.mean(np.sum(np.nan_to_num(errors) ** 2, axis=1))))
 
 
-def _within(outputs: Array, speed: float, shaft: float) -> bool:
-    if not np.isfinite(outputs).all():
-        return False
-    fastest, strongest = np.abs(outputs[:, 1]).max(), np.abs(outputs[:, 2]).max()
-    return bool(fastest <= speed and strongest <= shaft)
+def _within(outputs: Array, most: Most) -> bool:
+    reached = np.max(np.abs(outputs[:, 1:]), axis=0)  # NaN is not within
+    return bool(reached[0] <= most.speed_rad_s and reached[1] <= most.shaft_torque_nm)
 
 
 def _test(name: str, torque: float, names: tuple[str, str]) -> _Test:

@@ -9,7 +9,7 @@ import pytest
 
 from hil.analysis.diagnosis import examine
 from hil.analysis.diagnosis.data.held import moves, refuse_held
-from hil.analysis.diagnosis.thresholds import FROZEN_S
+from hil.analysis.diagnosis.thresholds import MOMENT_S
 from hil.analysis.missing_effects import Series, proven_noise, series_of
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model, parameter_names
@@ -161,7 +161,7 @@ def test_a_channel_that_ends_at_its_range_is_clipped(channel: str) -> None:
     assert refused(one_series(**{channel: np.minimum(values, top)})).startswith(f"{channel} looks clipped at")
 
 
-@pytest.mark.parametrize(("lasts_s", "frozen"), [(0.2 * FROZEN_S, False), (2.0 * FROZEN_S, True)])
+@pytest.mark.parametrize(("lasts_s", "frozen"), [(0.2 * MOMENT_S, False), (2.0 * MOMENT_S, True)])
 def test_a_telegram_that_was_lost_is_data_and_noise_that_stops_is_not(lasts_s: float, frozen: bool) -> None:
     values, samples = chirp()[MOTOR].copy(), round(1e3 * lasts_s)
     values[5000 : 5000 + samples] = values[5000]

@@ -6,7 +6,7 @@ import pytest
 from hil.analysis.diagnosis.data.gap import ChannelGap
 from hil.analysis.diagnosis.findings.held_out import Event, HeldOut, furthest
 from hil.analysis.diagnosis.findings.result import Verdict
-from hil.analysis.diagnosis.thresholds import CHANNEL_NOISES
+from hil.analysis.diagnosis.thresholds import MOMENT_S, VISIBLE
 from hil.core.channels import OUTPUTS
 from tests.hil.analysis.diagnosis.one_recording import NOISE, one_series
 
@@ -31,7 +31,7 @@ def test_more_than_noise_is_told_whatever_the_verdict(verdict: Verdict) -> None:
 
 def test_beside_a_name_whose_law_may_differ_a_little_more_may_stay_than_beside_none() -> None:
     assert (held(a=1.3).open("none"), held(a=1.3).open("named")) == (("a",), ())
-    assert (held(a=CHANNEL_NOISES).open("named"), held(a=CHANNEL_NOISES + 0.01).open("named")) == ((), ("a",))
+    assert (held(a=VISIBLE).open("named"), held(a=VISIBLE + 0.01).open("named")) == ((), ("a",))
 
 
 def test_a_moment_that_is_far_off_counts_where_nothing_is_said_to_be_missing() -> None:
@@ -53,9 +53,9 @@ def test_a_limit_that_is_met_once_is_the_moment_that_is_furthest_off() -> None:
     calm = furthest([trace], noise, [shown + np.random.default_rng(0).normal(size=shown.shape) * noise])
     assert calm is not None
     assert calm.noises < 1.5
-    shown[5000:5150, 2] += 8.0 * NOISE[2]
+    shown[5000:5200, 2] += 8.0 * NOISE[2]
     event = furthest([trace], noise, [shown])
     assert event is not None
     assert (event.channel, event.recording) == (OUTPUTS[2], trace.name)
-    assert event.time_s == pytest.approx(5.05)
+    assert event.time_s == pytest.approx(5.0 + 0.5 * MOMENT_S)
     assert event.noises == pytest.approx(8.0)

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.findings.separating import _WORDS, _outputs, _test, separating_plan
+from hil.analysis.diagnosis.findings.separating import _WORDS, Most, _outputs, _test, separating_plan
 from hil.core.channels import OUTPUTS, unit_of
 from hil.core.model import EffectUse, Model, save_model
 from hil.core.recording import driven_by_torque, read_recording, write_recording
@@ -30,6 +30,11 @@ FRICTION = EffectUse("coulomb_friction", {"torque_nm": 1.0, "stribeck_torque_nm"
 ROLLING = EffectUse("running_resistance", {"rolling_nm": 20.0, "aero_nms2_rad2": 0.0})
 
 
+def _most(torque_nm: float) -> Most:
+    """What a bench allows that gives such a torque."""
+    return Most(torque_nm, 40.0, 2.5 * BASE["gear_ratio"] * torque_nm)
+
+
 def hil(*arguments: object, cwd: Path) -> None:
     done = subprocess.run([HIL, *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -38,7 +43,7 @@ def hil(*arguments: object, cwd: Path) -> None:
 def test_the_separating_test_is_a_plan_that_loads(tmp_path: Path) -> None:
     lag = MODEL.with_effects(EffectUse("actuator_lag", {"time_constant_s": 0.004}))
     delay = MODEL.with_effects(EffectUse("dead_time", {"extra_delay_s": 0.004}))
-    words, text = separating_plan(lag, delay, NOISE, 30.0, NAMES)
+    words, text = separating_plan(lag, delay, NOISE, _most(30.0), NAMES)
     found = re.search(r"differ by ([\d.e+-]+) (\S.*) rms in (\w+), (.+) times its noise in a sample", words)
     assert found is not None
     column = OUTPUTS.index(found[3])
@@ -51,7 +56,7 @@ def test_the_separating_test_is_a_plan_that_loads(tmp_path: Path) -> None:
 def test_no_test_is_proposed_that_could_not_tell() -> None:
     lag = MODEL.with_effects(EffectUse("actuator_lag", {"time_constant_s": 2e-4}))
     later = MODEL.with_parameters(torque_delay=BASE["torque_delay"] + 2e-4, shaft_stiffness=6095.0)
-    words, text = separating_plan(lag, later, NOISE, 20.0, NAMES)
+    words, text = separating_plan(lag, later, NOISE, _most(20.0), NAMES)
     assert "no test of ours tells them apart" in words
     assert text == ""
 
@@ -73,16 +78,15 @@ def test_no_test_is_proposed_that_could_not_tell() -> None:
 )
 def test_the_test_fits_what_it_shall_tell_apart(one: EffectUse, other: EffectUse, chosen: str) -> None:
     speeds = np.array([0.1, 0.02, np.nan])  # no shaft torque measured
-    words, _ = separating_plan(MODEL.with_effects(one), MODEL.with_effects(other), speeds, 20.0, NAMES)
+    words, _ = separating_plan(MODEL.with_effects(one), MODEL.with_effects(other), speeds, _most(20.0), NAMES)
     assert chosen in words
 
 
 def test_both_models_keep_the_limits_that_were_given() -> None:
     stiff = MODEL.with_parameters(shaft_stiffness=9000.0)
-    for torque, speed, shaft in ((150.0, 40.0, 600.0), (60.0, 15.0, None)):
-        _, text = separating_plan(
-            MODEL, stiff, NOISE, torque, NAMES, speed_rad_s=speed, shaft_torque_nm=shaft
-        )
+    for most in (Most(150.0, 40.0, 600.0), Most(60.0, 15.0, 1200.0)):
+        torque, speed, shaft = most
+        _, text = separating_plan(MODEL, stiff, NOISE, most, NAMES)
         test = next(
             t
             for n in _WORDS
@@ -92,7 +96,7 @@ def test_both_models_keep_the_limits_that_were_given() -> None:
         for model in (MODEL, stiff):
             out = simulate(model, test.torque, 1e-3, Start(test.speed * BASE["gear_ratio"], test.speed))
             assert np.max(np.abs(out["wheel_speed_rad_s"])) <= speed
-            assert np.max(np.abs(out["shaft_torque_nm"])) <= (shaft or 2.5 * BASE["gear_ratio"] * torque)
+            assert np.max(np.abs(out["shaft_torque_nm"])) <= shaft
 
 
 @pytest.mark.parametrize("name", _WORDS)
