@@ -71,7 +71,9 @@ def diagnosis_of(
     named = tuple(_named(found, one, fitted) for one in found.effects)
     small = [one for one in named if not worth_naming(one.use, fitted.traces, asked.least, base)]
     effects = tuple(one for one in named if one not in small)
-    unseen = HeldOut(held.before, held.after, furthest(held.traces, found.noise, held.after_samples))
+    follows = any(EFFECTS[use.id].law.follows for use in found.model.effects)
+    walks = follows and not any(one.of_angle.any() for one in held.traces)
+    unseen = HeldOut(held.before, held.after, furthest(held.traces, found.noise, held.after_samples), walks)
     verdict, remaining = _verdict(found, effects, unseen, fitted)
     doubt = unseen.words(verdict)
     start, updates = _numbers(found, fitted)

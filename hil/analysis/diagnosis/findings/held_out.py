@@ -22,6 +22,9 @@ _WHAT_TO_DO = (
     "something is missing, or a number is wrong, that the recordings fitted do not show; give those held out "
     "as recordings too, and hold others out"
 )
+_OR_ANGLES = (
+    "a ripple's angle, integrated from a speed, walks off with that speed's noise (record the angle), or "
+)
 
 
 @dataclass(frozen=True)
@@ -36,11 +39,15 @@ class Event:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """Gaps with the model as it came and with the one given back, empty without recordings held out."""
+    """Gaps with the model as it came and with the one given back, empty without recordings held out.
+
+    `walks`: the model follows an angle that was not recorded.
+    """
 
     before: Gaps
     after: Gaps
     event: Event | None
+    walks: bool = False
 
     def open(self, verdict: Verdict) -> tuple[str, ...]:
         """Channels that keep more than noise, or where nothing is named, more than is proven to be noise."""
@@ -65,7 +72,7 @@ class HeldOut:
                 f"held-out recording {e.recording} is off by {multiple(e.noises)} the noise in {e.channel} "
                 f"at {e.time_s:.4g} s"
             )
-        return f"{'; '.join(lines)}: {_WHAT_TO_DO}" if lines else ""
+        return f"{'; '.join(lines)}: {_OR_ANGLES if self.walks else ''}{_WHAT_TO_DO}" if lines else ""
 
 
 def furthest(traces: Sequence[Series], noise: Array, simulated: Sequence[Array]) -> Event | None:

@@ -1,5 +1,7 @@
 """Recordings that no fit has seen: how much of them may stay."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -59,3 +61,9 @@ def test_a_limit_that_is_met_once_is_the_moment_that_is_furthest_off() -> None:
     assert (event.channel, event.recording) == (OUTPUTS[2], trace.name)
     assert event.time_s == pytest.approx(5.0 + 0.5 * MOMENT_S)
     assert event.noises == pytest.approx(8.0)
+
+
+def test_an_angle_that_was_not_recorded_may_be_what_is_wrong() -> None:
+    words = replace(held(a=9.0), walks=True).words("named")
+    assert "walks off with that speed's noise (record the angle), or something is missing" in words
+    assert "angle" not in held(a=9.0).words("named")
