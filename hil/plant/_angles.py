@@ -22,7 +22,7 @@ SPEEDS: Flags = np.zeros(len(OUTPUTS), dtype=bool)
 """Of no output as an angle."""
 TURNED_OVER_S = 0.004
 """Within which an angle is read, or two samples: what an axle's bends in a speed leave alone up to 50 Hz."""
-_ALIKE = 1e-9  # of all that readings span: nearer ones are one level
+_ALIKE = 1e-3  # of the usual distance of levels: nearer ones are one level, written with other digits
 _SURE_RAD, _MOSTLY = 0.5 * np.pi, 0.99  # of a wrapped angle's steps so many are at most so large
 
 
@@ -111,11 +111,12 @@ def rounding_step(values: Array, *, often: bool = True) -> float:
     Args:
         often: whether each level must be read often; not of an angle that goes on.
     """
-    levels = np.unique(values)
-    if len(levels) < 3 or (often and 4 * len(levels) > len(values)):
+    gaps = np.diff(np.unique(values))
+    gaps = (
+        gaps[gaps > _ALIKE * np.quantile(gaps, 0.9, method="lower")] if len(gaps) else gaps
+    )  # digits of a level
+    if len(gaps) < 2 or (often and 4 * (len(gaps) + 1) > len(values)):
         return 0.0
-    gaps = np.diff(levels)
-    gaps = gaps[gaps > _ALIKE * (levels[-1] - levels[0])]  # digits of one level
     step = float(np.median(gaps[gaps <= 1.5 * np.quantile(gaps, 0.1)]))
     off = np.abs(gaps / step - np.rint(gaps / step))
     return step if np.mean(off < 0.05) > 0.9 else 0.0

@@ -16,7 +16,7 @@ from hil.analysis.missing_effects._fit import (
     with_better_starts,
 )
 from hil.analysis.missing_effects._hypothesis import Hypothesis
-from hil.analysis.missing_effects._odds import Candidate
+from hil.analysis.missing_effects._odds import ALIKE, Candidate
 from hil.analysis.missing_effects._orders import count_of_orders
 from hil.analysis.missing_effects._phase import tracked
 from hil.analysis.missing_effects._problem import Problem
@@ -75,12 +75,18 @@ class Candidates:
         least = math.log(candidate.known) + self.least(candidate)
         return self.problem.most_to_gain(candidate.point.errors) > least
 
-    def go_on_from(self, best: Candidate) -> None:
-        """Weigh errors by what the best hypothesis so far leaves."""
+    def has_moved(self, candidate: Candidate) -> list[str]:
+        """Numbers that are not what the base says at odds of 20 : 1."""
+        coordinates = self.problem.coordinates(candidate.point.hypothesis)
+        return [one.name for one in coordinates if math.log1p(one.away(0.0) ** 2) > ALIKE and one.term < 0]
+
+    def go_on_from(self, best: Candidate) -> Candidate:
+        """Weigh errors by what the best hypothesis leaves; it, with ripples as angles have them now."""
         powers = best.point.powers(self.problem)
         self.values = powers.values(self.problem.noise)
-        turned = tracked(self.problem, best.point)
+        turned, hypothesis = tracked(self.problem, best.point)
         self.problem = turned.weighed_by(powers.spectrum(self.problem.noise))
+        return best if hypothesis is best.point.hypothesis else self.at(hypothesis, best)
 
     def weighed_as(self, candidate: Candidate, *, once: bool = False) -> Problem:
         """The problem, errors weighed by the spectrum that a candidate leaves itself.

@@ -16,7 +16,7 @@ from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import NUMBERS, Scene, may_join
 from hil.analysis.missing_effects._search import HALF, is_loss
 from hil.analysis.missing_effects._spectrum import RIGHT_TO
-from hil.core.effects import EFFECTS
+from hil.core.effects import EFFECTS, Effect
 from hil.core.model import EffectUse, Model
 
 
@@ -54,23 +54,35 @@ def gains_instead(done: Candidates, best: Candidate) -> dict[str, tuple[str, ...
     if best.names:
         return {}
     hypothesis, found = best.point.hypothesis, {}
-    moved = [one for one in done.problem.coordinates(hypothesis) if np.log1p(one.away(0.0) ** 2) > ALIKE]
-    for name in [one.name for one in moved]:
+    for name in done.has_moved(best):
         back = _with_number(hypothesis, name, done.problem.model.parameters[name])
-        tried = [done.fitted(back.with_term(use), best, held=frozenset({name})) for use in _gains(done, back)]
+        tried = [
+            done.fitted(back.with_term(use), best, held=frozenset({name})) for use in gains_of(done, back)
+        ]
         alike = [one for one in tried if done.score(one) > done.score(best) - ALIKE]
         found[name] = tuple(one.names[0] for one in sorted(alike, key=done.score, reverse=True))
     return found
 
 
-def _gains(done: Candidates, hypothesis: Hypothesis) -> list[EffectUse]:
-    """Gains that may join, of each channel that was recorded."""
-    scene = Scene(done.problem, hypothesis)
+def gains_of(done: Candidates, hypothesis: Hypothesis) -> list[EffectUse]:
+    """Gains that may join, of each channel that was recorded, of one."""
     effects = [one for one in EFFECTS.values() if one.off == 1.0 and may_join(one, hypothesis)]
-    return [
-        EffectUse(one.id, {one.parameters[0].name: 1.0} | about)
-        for one in effects
-        for about in ([{"channel": name} for name in scene.channels] if one.text_parameters else [{}])
+    return [use for one in effects for use in _on_each_channel(done, hypothesis, one)]
+
+
+def twins_of(done: Candidates, hypothesis: Hypothesis, use: EffectUse) -> list[EffectUse]:
+    """What may show the same as a gain, or as an error of a sensor, in its place: where it does nothing."""
+    effect = EFFECTS[use.id]
+    if effect.off == 1.0:
+        return gains_of(done, hypothesis)
+    return _on_each_channel(done, hypothesis, effect) if "channel" in use.values else []
+
+
+def _on_each_channel(done: Candidates, hypothesis: Hypothesis, effect: Effect) -> list[EffectUse]:
+    channels = Scene(done.problem, hypothesis).channels if effect.text_parameters else ()
+    number: dict[str, float | str] = {effect.parameters[0].name: effect.off}
+    return [EffectUse(effect.id, number | {"channel": name}) for name in channels] or [
+        EffectUse(effect.id, number)
     ]
 
 
@@ -79,6 +91,21 @@ def numbers_of(at: Linearised, asked: Model) -> dict[str, tuple[float, float, fl
     return {
         name: (float(asked.parameters[name]), float(value), at.standard_error(-1, name))
         for name, value in at.point.hypothesis.numbers.items()
+    }
+
+
+def as_known(
+    problem: Problem, numbers: Mapping[str, tuple[float, float, float]]
+) -> dict[str, tuple[float, float, float]]:
+    """Numbers with errors that no fit gets below: no model is right to more, so no number is known better.
+
+    The shaft torque of a rigid axle leaps, and tells the dead time to a sample.
+    """
+    leaps = problem.model.kind == "rigid" and any(one.has[2] for one in problem.series)
+    sample_s = {"torque_delay": problem.series[0].dt / np.sqrt(12.0)} if leaps else {}
+    return {
+        name: (base, value, float(np.hypot(error, sample_s.get(name, RIGHT_TO * abs(value)))))
+        for name, (base, value, error) in numbers.items()
     }
 
 
@@ -108,7 +135,7 @@ def mismatches(
     from scipy.special import ndtr
 
     found = []
-    for name, (_, value, error) in numbers.items():
+    for name, (_, value, _) in numbers.items():
         if best.names and (name in as_the_base or not _stands_beside(name, best, done.problem.model)):
             continue
         moved, doubt = _off(name, numbers, done)
@@ -118,7 +145,7 @@ def mismatches(
                 Named(
                     EffectUse("parameter_mismatch", {"parameter": name, "value": value}),
                     sure,
-                    {"value": error},
+                    {"value": as_known(done.problem, numbers)[name][2]},
                     alike := gains.get(name, ()),
                     EFFECTS["sensor_gain"].shown_by if alike else "",
                 )

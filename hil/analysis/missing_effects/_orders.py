@@ -121,7 +121,7 @@ def turned_with(problem: Problem, point: Point) -> Problem:
     for index, one in enumerate(problem.series):
         shown = problem.samples(index, point.hypothesis, point.starts[index])
         apart = np.fft.rfft(one.samples - shown, axis=0)
-        powers = powers_of([point.errors[index]], one.rate_hz, problem.signal)
+        powers = powers_of([point.errors[index]], problem.rate_hz, problem.signal)
         power = np.mean(powers.power, axis=0)
         share = np.maximum(1.0 - noise / np.maximum(power, 1e-300), 0.0)
         band = bands_of(powers.edges_hz, np.fft.rfftfreq(len(shown), one.dt).astype(np.float64))

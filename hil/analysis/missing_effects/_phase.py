@@ -4,11 +4,13 @@ A speed's noise makes its integral a random walk of known size, which a high ord
 of phase. The walk joins the fit: its values at knots are linear to first order, with its own density as
 their prior, so that a ripple that shows little moves no angle (it stands in place of the tracking of H. Vold,
 J. Leuridan, SAE 931288 (1993), which follows an amplitude). Order and phase move along: a walk looks like
-both of them, so that they would stay where they were when angles had walked off.
+both of them, so that they would stay where they were when angles had walked off. An angle that a ripple tells
+to no better than `_KNOWN_RAD` of its phase says nothing of it: a sine is not straight so far.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -16,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.missing_effects._fit import Point, without
-from hil.analysis.missing_effects._hypothesis import tolerance_of
+from hil.analysis.missing_effects._hypothesis import Hypothesis, tolerance_of
 from hil.analysis.missing_effects._orders import Side, turned_with
 from hil.analysis.missing_effects._problem import Problem
 from hil.core.effects import EFFECTS
@@ -31,23 +33,34 @@ _ROUNDS = 6
 _STEPS = (1.0, 0.5, 0.25)
 _NO_WALK = 1e-3  # of a speed's noise: an angle is read anew at every sample
 _SETTLED = 1.0  # half the squares by which a round must fall
+_KNOWN_RAD = 0.5  # of phase
 _COLUMNS: dict[Side, int] = {"wheel": 0, "rotor": 1}
 
 
-def tracked(problem: Problem, point: Point) -> Problem:
-    """The same, angles by the speeds of a point and, where it has ripples, by what these say of them."""
-    turned = turned_with(problem, point)
-    uses = [use for use in point.hypothesis.terms if EFFECTS[use.id].law.follows]
-    if not uses:
-        return turned
+def tracked(problem: Problem, point: Point) -> tuple[Problem, Hypothesis]:
+    """The same, angles by the speeds of a point and, where it has ripples, by what these say of them.
+
+    The point's hypothesis comes along, order and phase of its ripples as they go with these angles.
+    """
+    turned, hypothesis = turned_with(problem, point), point.hypothesis
+    ripples = [index for index, use in enumerate(hypothesis.terms) if EFFECTS[use.id].law.follows]
+    if not ripples:
+        return turned, hypothesis
     ratio = gear_ratio_of(problem.model) or 1.0
     by_noise = turned.weighed_by_noise()  # a walk is noise, not discrepancy
-    walks = problem.each(lambda index: _Walk(by_noise, point, index))
+    walks = _walks(by_noise, point)
     read = problem.each(lambda index: problem.series[index].angles(ratio))
     angles = problem.each(lambda index: walks[index].likelier(turned.angles[index], read[index]))
-    for use in uses:
-        angles = _Followed(by_noise, walks, use, angles).walked()
-    return replace(turned, angles=tuple(angles))
+    for index in ripples:
+        walks = _walks(by_noise, replace(point, hypothesis=hypothesis))
+        followed = _Followed(by_noise, walks, hypothesis.terms[index], angles)
+        angles = followed.walked()
+        hypothesis = hypothesis.with_values(index, followed.order_and_phase(), hypothesis.opened[index])
+    return replace(turned, angles=tuple(angles)), hypothesis
+
+
+def _walks(problem: Problem, point: Point) -> list[_Walk]:
+    return problem.each(lambda index: _Walk(problem, point, index))
 
 
 def errors_of(problem: Problem, point: Point, use: EffectUse) -> dict[str, float]:
@@ -56,8 +69,7 @@ def errors_of(problem: Problem, point: Point, use: EffectUse) -> dict[str, float
     An order of a side whose speed was not recorded is known as far as the gear ratio.
     """
     by_noise = problem.weighed_by_noise()
-    walks = problem.each(lambda index: _Walk(by_noise, point, index))
-    followed = _Followed(by_noise, walks, use, problem.angles)
+    followed = _Followed(by_noise, _walks(by_noise, point), use, problem.angles)
     ramp, offset = np.sqrt(np.diag(followed.step(problem.each(followed.linearised))[2]))
     order, column = float(use.values["order"]), 1 - followed.column  # of a speed
     if not all(one.has[column] for one in problem.series):
@@ -113,7 +125,8 @@ class _Followed:
         side = EFFECTS[use.id].law.follows
         assert side is not None
         self.problem, self.walks, self.begun, self.column = problem, walks, begun, _COLUMNS[side]
-        self.aside = _ASIDE_RAD / float(use.values["order"])
+        self.order, self.phase_rad = float(use.values["order"]), float(use.values["phase_rad"])
+        self.aside = _ASIDE_RAD / self.order
         self.hats, self.along, self.priors = [], [], []
         for walk, angles in zip(walks, begun, strict=True):
             count, dt = len(angles), walk.one.dt
@@ -153,6 +166,12 @@ class _Followed:
                 break
         return [self.angles(index, self.knots[index], np.zeros(2)) for index in each]
 
+    def order_and_phase(self) -> dict[str, float]:
+        """As they go with the angles that walked."""
+        ramp, offset = self.shared.tolist()
+        phase = self.phase_rad + self.order * offset
+        return {"order": self.order * (1.0 + ramp), "phase_rad": math.remainder(phase, 2.0 * math.pi)}
+
     def linearised(self, index: int) -> _Linear:
         """Errors of a recording, and their slopes by its knots (knots x errors)."""
         walk, angles = self.walks[index], self.angles(index, self.knots[index], self.shared)
@@ -169,6 +188,8 @@ class _Followed:
         for (left, slopes), along, prior, knots in zip(
             linear, self.along, self.priors, self.knots, strict=True
         ):
+            doubt = np.diag(np.linalg.inv(slopes @ slopes.T + prior))
+            slopes = slopes * (np.sqrt(doubt) * self.order < _KNOWN_RAD)[:, None]
             shared = along @ slopes
             inverse = np.linalg.inv(slopes @ slopes.T + prior)
             right, both = slopes @ left + prior @ knots, slopes @ shared.T

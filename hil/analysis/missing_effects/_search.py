@@ -42,6 +42,8 @@ _MOST_NAMES = 4
 def search(done: Candidates, show: Callable[[str], None]) -> None:
     """Fit the numbers alone, then grow and prune sets of effects until noise is left or none pays.
 
+    Where noise is left but the base's numbers had to move, an effect may be the likelier.
+
     Args:
         done: nothing yet; holds what was fitted, also after an exception.
     """
@@ -54,7 +56,9 @@ def search(done: Candidates, show: Callable[[str], None]) -> None:
     best = done.fitted(best.point.hypothesis, best)
     done.go_on_from(best)
     weak = False
-    while len(best.names) < _MOST_NAMES and done.may_gain(best):
+    while len(best.names) < _MOST_NAMES and (
+        done.may_gain(best) or (not best.names and done.has_moved(best))
+    ):
         grown = _grown(done, best, linear if not best.names else (), show)
         if grown is None or not done.gains(best, grown):
             break
@@ -62,21 +66,18 @@ def search(done: Candidates, show: Callable[[str], None]) -> None:
         was_weak, weak = weak, remains(had, has, *problem.noise_in(grown.point.errors)) > HALF
         if weak and was_weak:
             break  # of two that go together the first may take off less than half, the second does not
-        best = _pruned(done, grown, show)
-        done.go_on_from(best)
-        if any(EFFECTS[use.id].law.follows for use in best.point.hypothesis.terms):
-            best = _with_better_angles(done, best)
+        best = _with_better_angles(done, _pruned(done, grown, show))
 
 
 def _with_better_angles(done: Candidates, best: Candidate) -> Candidate:
-    """Fit a ripple to angles as they are better known after it, while its likelihood grows."""
+    """Go on; fit a ripple to angles as they are better known after it, while its likelihood grows."""
     for _ in range(MOST_ROUNDS):
-        better = done.fitted(best.point.hypothesis, best)
-        growth = better.log_likelihood - best.log_likelihood
-        best = better
-        if growth < GROWING:
+        begins = done.go_on_from(best)
+        if begins is best:
+            return best
+        had, best = best.log_likelihood, done.fitted(begins.point.hypothesis, begins)
+        if best.log_likelihood < had + GROWING:
             break
-        done.go_on_from(best)
     return best
 
 

@@ -50,6 +50,7 @@ FIT_RATE_HZ = 250.0
 """Errors are averaged down to this rate: twice the bandwidth of anything mechanical in an axle."""
 _SLOWEST_S = 0.02  # a recording sampled more slowly is refused
 _EVEN_SHARE = 0.05  # of a sample, by which stamps may be off their grid and still be taken as they are
+_ALIKE = 0.01  # of a sample, by which clocks may differ
 _USUAL = 0.95  # of the steps between uneven stamps are at most as long as a block
 _EXCITED = 1e-2  # of the octave that a periodic torque excites most, for an octave that it excites at all
 _RESTS_S = 0.1  # at least is a rest; a speed that passes zero is none
@@ -152,17 +153,24 @@ class Series:
         return turned(self.samples, self.dt, gear_ratio, self.first_wheel_angle_rad)
 
 
-def series_of(model: Model, recordings: Sequence[Recording]) -> list[Series]:
-    """The unbroken stretches of all recordings, each on its own even grid.
+def series_of(model: Model, recordings: Sequence[Recording], step_s: float = 0.0) -> list[Series]:
+    """The unbroken stretches of all recordings on even grids as fine as the coarsest of them.
+
+    Args:
+        step_s: of the grids, where others beside these have given it.
 
     Raises:
         BadInputError: no torque request, none of the model's outputs, too short, too slowly sampled, or no
         load that the model takes.
     """
-    found = []
+    pieces = []
     for recording in (_comparable(model, one) for one in recordings):
         for part in unbroken(recording, model.load_input):
-            found += [_series(model, piece) for whole in excerpts(part) for piece in _moving(model, whole)]
+            pieces += [piece for whole in excerpts(part) for piece in _moving(model, whole)]
+    for piece in pieces:
+        _refuse_too_little(piece)
+    step_s = step_s or max((even_times(at_true_times(one).time_s)[1] for one in pieces), default=0.0)
+    found = [_series(model, piece, step_s) for piece in pieces]
     if is_regulated(model) and not any(one.has.any() for one in found):
         raise BadInputError(
             "the recordings have nothing beside the speed that the wheels are held at",
@@ -221,7 +229,7 @@ def _refuse_too_little(recording: Recording) -> None:
         )
 
 
-def _notes(recording: Recording, even: bool, dt: float) -> list[str]:
+def _notes(recording: Recording, uneven: str, dt: float) -> list[str]:
     """What was done to a recording's readings, and which channels may have been meant to be read."""
     strange = [name for name in recording.channels if name not in CHANNELS]
     there = read_from(recording)
@@ -230,8 +238,8 @@ def _notes(recording: Recording, even: bool, dt: float) -> list[str]:
         for channel in OUTPUTS
         if channel not in there and (near := closest(channel, strange))
     ]
-    if not even:
-        notes.append(f"time stamps are uneven: put on a grid of {dt * 1e3:.4g} ms")
+    if uneven:
+        notes.append(f"{uneven}: put on a grid of {dt * 1e3:.4g} ms")
     notes += [
         f"{name} is what {angle} turns by within {TURNED_OVER_S * 1e3:g} ms"
         for name, angle in there.items()
@@ -240,19 +248,22 @@ def _notes(recording: Recording, even: bool, dt: float) -> list[str]:
     return notes
 
 
-def _series(model: Model, recording: Recording) -> Series:
-    _refuse_too_little(recording)
+def _series(model: Model, recording: Recording, step_s: float) -> Series:
     stamps, recording = recording.time_s, at_true_times(recording)
     time = recording.time_s
     grid, dt = even_times(time)
+    is_other = abs(dt - step_s) > _ALIKE * dt
+    if is_other:
+        grid, dt = np.arange(time[0], time[-1], step_s), step_s
     nearest = np.clip(np.searchsorted(time, grid - 0.5 * dt), 0, len(time) - 1)
-    even = bool(np.max(np.abs(time[nearest] - grid)) <= _EVEN_SHARE * dt)
+    even = bool(np.max(np.abs(time[nearest] - grid)) <= _EVEN_SHARE * dt) and not is_other
+    uneven = "sampled at another rate" if is_other else "" if even else "time stamps are uneven"
 
     def on_grid(values: Array) -> Array:
         return np.asarray(values[nearest] if even else np.interp(grid, time, values), dtype=float)
 
     samples, angle = np.full((2, len(grid), len(OUTPUTS)), np.nan)
-    of_angle, notes = by_angle(recording), [*recording.notes, *_notes(recording, even, dt)]
+    of_angle, notes = by_angle(recording), [*recording.notes, *_notes(recording, uneven, dt)]
     notes += [jittered(dt)] if time is not stamps else []
     for column, name in enumerate(OUTPUTS):
         if of_angle[column]:

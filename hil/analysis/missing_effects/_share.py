@@ -25,7 +25,7 @@ import numpy.typing as npt
 from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._fit import Linearised, Point, without
 from hil.analysis.missing_effects._hypothesis import Hypothesis
-from hil.analysis.missing_effects._odds import Candidate, remains
+from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains
 from hil.analysis.missing_effects._orders import is_held, turns
 from hil.analysis.missing_effects._outcome import Replay
 from hil.analysis.missing_effects._problem import Problem
@@ -59,8 +59,8 @@ class Judged:
 def share_of(
     of: Judged, fewer: Candidate, best: Candidate, at: Linearised, index: int, wrong: Array | float = 0.0
 ) -> float:
-    """What an effect takes off over that and what stays, where it lasts; 0 of a ripple that is none."""
-    if not _is_line(of.done, at, index):
+    """What an effect takes off over that and what stays, where it lasts; 0 where its size is not known."""
+    if not (_is_sized(at, index) and _is_line(of.done, at, index)):
         return 0.0
     lasts = constancy(of.done.problem, at, index, of.done.cost_of_a_number(best))
     return (1.0 - _remains(of, fewer, best, wrong)) * lasts
@@ -85,6 +85,20 @@ def is_linear(use: EffectUse) -> bool:
     """Whether an effect changes the linear chain or what a sensor reads, and no law bends."""
     law = EFFECTS[use.id].law
     return (law.chain is not None or law.reads is not None) and law.tyre_rate is None
+
+
+def _is_sized(at: Linearised, index: int) -> bool:
+    """Whether a number by which an effect acts is known to half of itself.
+
+    Else another law is all that it takes: friction that turns over many radians is a spring. Nor is it
+    friction where nothing but its offset acts, which has a sign.
+    """
+    use = at.point.hypothesis.terms[index]
+    effect = EFFECTS[use.id]
+    free = [name for name in effect.acting() if np.isfinite(at.standard_error(index, name))]
+    names = [name for name in free if effect.parameter(name).lower >= 0.0] or free
+    sizes = {name: abs(float(use.values[name]) - effect.off) for name in names}
+    return not names or any(at.standard_error(index, name) < HALF * size for name, size in sizes.items())
 
 
 def _is_line(done: Candidates, at: Linearised, index: int) -> bool:
@@ -115,7 +129,7 @@ def _remains(of: Judged, before: Candidate, after: Candidate, wrong: Array | flo
         return 1.0
     had, has = of.left(before), of.left(after)
     has = has + np.clip(had - has, 0.0, wrong)
-    if after.prior - before.prior > done.cost_of_a_number(after):
+    if after.prior - before.prior > ALIKE:
         had = np.fmax(had, of.left(done.at(_fewer(after.point.hypothesis, before.names), after)))
     there = np.isfinite(has)
     noise, most = problem.noise_in(after.point.errors)

@@ -19,11 +19,14 @@ from hil.analysis.missing_effects._curve import curves_of
 from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised, point_at
 from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of
 from hil.analysis.missing_effects._mismatch import (
+    as_known,
     as_the_base_has,
     gains_instead,
+    gains_of,
     is_far,
     mismatches,
     numbers_of,
+    twins_of,
 )
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, weights_of
 from hil.analysis.missing_effects._outcome import Named, Outcome, Verdict
@@ -38,6 +41,7 @@ from hil.analysis.missing_effects._share import (
     share_of,
     wrong_by_laws,
 )
+from hil.analysis.missing_effects._spectrum import RIGHT_TO
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
@@ -61,8 +65,8 @@ def as_far_as_known(of: Judged, why: str) -> Outcome:
     weights = _weights(done.problem, candidates, values)
     numbers, model = numbers_of(at, of.asked), alone.point.hypothesis.model()
     return Outcome(
-        "unknown", (), tuple(_others(of, alone, candidates, weights)), numbers, is_far(numbers, done),
-        model, model,
+        "unknown", (), tuple(_others(of, alone, candidates, weights)), as_known(done.problem, numbers),
+        is_far(numbers, done), model, model,
         curves_of(alone.point.hypothesis, of.fitted), 0.0,
         done.problem.noise * np.sqrt(done.problem.series[0].block), (), of.fitted, of.held_out,
         unfinished=why,
@@ -73,7 +77,9 @@ def judged(of: Judged) -> Outcome:
     """The outcome of a search."""
     done = of.done
     likeliest = done.best
-    if len(likeliest.names) > 1 and not done.problem.is_noise(likeliest.point.errors):
+    if done.problem.is_noise(likeliest.point.errors):
+        _twins(done, likeliest, done.score(likeliest) - ALIKE)
+    elif len(likeliest.names) > 1:
         _swapped(done, likeliest, is_loss)
     at = linearised(done.weighed_as(done.best, once=True), done.best.point)
     may_be_off = _may_be_off(of, at)
@@ -113,8 +119,8 @@ def judged(of: Judged) -> Outcome:
     given, steadied = best.point.hypothesis, held_against_drift(done.problem, best.point)
     model = (given.with_term(steadied) if steadied else given).model()
     return Outcome(
-        verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), numbers, done.problem.far,
-        model, done.found[()].point.hypothesis.model(),
+        verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), as_known(done.problem, numbers),
+        done.problem.far, model, done.found[()].point.hypothesis.model(),
         curves_of(best.point.hypothesis, of.fitted), 0.0,
         done.problem.noise * np.sqrt(done.problem.series[0].block), at.drawn(_DRAWN), of.fitted, of.held_out,
         steadied,
@@ -186,7 +192,8 @@ def _swapped(done: Candidates, best: Candidate, asked: Callable[[EffectUse], boo
         alone = [one for one in pool if len(one.names) == 1 and one.names[0] not in best.names]
         for index in range(len(best.names)) if len(best.names) > 1 else ():
             for single in alone[:_ALONE]:
-                for begins in _in_its_place(done, best, index, single, least):
+                fewer = best.point.hypothesis.without(index)
+                for begins in _in_its_place(done, best, fewer, single.point.hypothesis, least):
                     done.fitted(begins, best, at_least=least)
         return
     terms: dict[str, tuple[EffectUse, frozenset[str]]] = {}
@@ -202,16 +209,39 @@ def _swapped(done: Candidates, best: Candidate, asked: Callable[[EffectUse], boo
             done.fitted(fewer.with_term(*rival), best, at_least=least)
 
 
+def _twins(done: Candidates, best: Candidate, least: float) -> None:
+    """Fit each other gain in the place of a gain, or of numbers that moved, and each other sensor's error.
+
+    An axle shows the same by them. Which of them it is only what the base says can tell, and that is far
+    behind where numbers have moved.
+    """
+    hypothesis = best.point.hypothesis
+    places = [
+        (fewer, twins_of(done, fewer, use))
+        for index, use in enumerate(hypothesis.terms)
+        for fewer in [hypothesis.without(index)]
+    ]
+    if not best.names and done.has_moved(best):
+        places = [(hypothesis, gains_of(done, hypothesis))]
+    for fewer, twins in places:
+        for twin in twins:
+            if label_of(twin) not in best.names:
+                rival = replace(fewer, terms=(), opened=()).with_term(twin)
+                for begins in _in_its_place(done, best, fewer, rival, least):
+                    done.fitted(begins, best, at_least=least)
+
+
 def _in_its_place(
-    done: Candidates, best: Candidate, index: int, rival: Candidate, least: float
+    done: Candidates, best: Candidate, fewer: Hypothesis, other: Hypothesis, least: float
 ) -> list[Hypothesis]:
-    """The best hypothesis with a rival in place of one of its effects, at numbers where a fit may begin.
+    """The best hypothesis, `fewer` of its effects and a rival in their place, where a fit may begin.
 
     They are the likelier of its own and the rival's; and the base's, to which the effects were fitted first.
     """
-    fewer, other = best.point.hypothesis.without(index), rival.point.hypothesis
     joined = fewer.with_term(other.terms[0], other.opened[0])
     near = max(joined, replace(joined, numbers=other.numbers), key=lambda one: done.score(done.at(one, best)))
+    if not done.has_moved(best):
+        return [near]
     as_it_came = replace(joined, numbers=dict(fewer.base.parameters))
     held = done.fitted(as_it_came, best, held=frozenset(joined.numbers), at_least=least)
     return [near, held.point.hypothesis]
@@ -242,7 +272,7 @@ def _named(
 def _errors(problem: Problem, at: Linearised, index: int) -> dict[str, float]:
     """Standard errors of an effect's numbers: by the fit, its law, and angles that may have walked off."""
     use = at.point.hypothesis.terms[index]
-    law = 0.0 if is_linear(use) else LAW  # nor are its numbers known better, but an order, which is counted
+    law = RIGHT_TO if is_linear(use) else LAW  # nor are numbers known better, but an order, which is counted
     errors = {
         name: float(np.hypot(error, (0.0 if name == "order" else law) * float(value)))
         for name, value in use.values.items()

@@ -20,6 +20,7 @@ from hil.analysis.diagnosis.thresholds import (
     MOMENT_S,
     PLATEAU_SAMPLES,
     PLAY_RAD,
+    STANDSTILL_SHARE,
     STEPS,
     TORQUE_MOVES,
     TURNS_ON,
@@ -119,7 +120,8 @@ def _same_for_long(one: Series, column: int, reading: _Reading) -> None:
     begin, end = reading.held[np.argmax(reading.held[:, 1] - reading.held[:, 0])].tolist()
     value, same = float(reading.values[begin]), reading.same(begin, end)
     unlikely = (end - begin) * -np.log(same) > np.log(LIKELIER * len(reading.values))
-    if same > 0.5 or not unlikely or abs(value) <= reading.step:  # noise below the steps; or it rests
+    rests = max(reading.step, STANDSTILL_SHARE * float(np.max(np.abs(reading.values))))
+    if same > 0.5 or not unlikely or abs(value) <= rests:  # noise below the steps; or an encoder stands still
         return
     often = np.count_nonzero(reading.values[reading.held[:, 0]] == value) > 1
     if often and value in (np.min(reading.values), np.max(reading.values)):

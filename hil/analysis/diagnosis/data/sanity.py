@@ -36,7 +36,7 @@ def examine(
     """
     for recording in recordings:
         refuse_implausible(recording)
-    series = series_of(model, recordings) if recordings else []
+    series = series_of(model, recordings, beside[0].dt if beside else 0.0) if recordings else []
     if not series:
         return [], []
     noise = proven_noise([*series, *beside], {})

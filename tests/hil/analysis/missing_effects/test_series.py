@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -123,3 +124,20 @@ def test_outputs_without_a_function_are_not_compared() -> None:
         )
         with pytest.raises(BadInputError, match="no function for any"):
             series_of(model, [lacking])
+
+
+def test_recordings_of_other_rates_come_on_the_grid_of_the_coarsest() -> None:
+    fine = _recorded()
+    coarse = replace(fine, channels={name: values[::3] for name, values in fine.channels.items()})
+    for order in ((fine, coarse), (coarse, fine)):
+        both = series_of(_MASS, order)
+        assert [one.dt for one in both] == pytest.approx([3e-3, 3e-3])
+        assert {one.rate_hz for one in both} == {both[0].rate_hz}
+        noted = [any(note.startswith("sampled at another rate") for note in one.notes) for one in both]
+        assert noted == [one is fine for one in order]
+    (held,) = series_of(_MASS, [fine], step_s=3e-3)
+    assert held.dt == 3e-3
+    impulse = float(np.sum(fine[INPUT]) * 1e-3)
+    assert float(np.sum(held.torque) * held.dt) == pytest.approx(
+        impulse, abs=0.01 * np.max(np.abs(fine[INPUT]))
+    )
