@@ -37,6 +37,7 @@ _ASIDE = (0.98, 1.02)  # times an optional number that is set already: to see wh
 _FAR = (0.25, 0.5, 2.0, 4.0)  # times the same: a fit begins there, as a play has many minima
 _REACHES = (1.0, 0.25)  # how far another minimum is looked for: as far as usual, then near
 _MOST_NAMES = 4
+_NEAR_WHOLE = 0.05  # of an order
 
 
 def search(done: Candidates, show: Callable[[str], None]) -> None:
@@ -66,7 +67,7 @@ def search(done: Candidates, show: Callable[[str], None]) -> None:
         was_weak, weak = weak, remains(had, has, *problem.noise_in(grown.point.errors)) > HALF
         if weak and was_weak:
             break  # of two that go together the first may take off less than half, the second does not
-        best = _with_better_angles(done, _pruned(done, grown, show))
+        best = _with_whole_orders(done, _with_better_angles(done, _pruned(done, grown, show)))
 
 
 def _with_better_angles(done: Candidates, best: Candidate) -> Candidate:
@@ -78,6 +79,25 @@ def _with_better_angles(done: Candidates, best: Candidate) -> Candidate:
         had, best = best.log_likelihood, done.fitted(begins.point.hypothesis, begins)
         if best.log_likelihood < had + GROWING:
             break
+    return best
+
+
+def _with_whole_orders(done: Candidates, best: Candidate) -> Candidate:
+    """The likelier of a hypothesis and of its ripples fitted again from whole numbers of periods a turn.
+
+    Most ripples have one; where angles walk off, a fit from another order may end beside it.
+    """
+    hypothesis, kept = best.point.hypothesis, (done.problem, done.values)
+    for index, use in enumerate(hypothesis.terms):
+        whole = round(float(use.values.get("order", 0.0)))
+        if 0.0 < abs(float(use.values.get("order", whole)) - whole) < _NEAR_WHOLE and whole:
+            hypothesis = hypothesis.with_values(index, {"order": float(whole)}, hypothesis.opened[index])
+    if hypothesis is best.point.hypothesis:
+        return best
+    tried = _with_better_angles(done, done.at(hypothesis, best))
+    if tried.log_likelihood > best.log_likelihood:
+        return tried
+    done.problem, done.values = kept
     return best
 
 

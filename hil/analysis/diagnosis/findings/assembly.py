@@ -51,6 +51,11 @@ NUMBERS_TRADE = (
     "other numbers of the base model would only trade one channel's error for another's: it stays as it came"
 )
 
+NUMBERS_BENT = (
+    "what is missing has no name, and bends the numbers of the model that is given back: they may be off by "
+    "more than their errors say"
+)
+
 
 def diagnosis_of(
     found: Outcome,
@@ -100,6 +105,7 @@ def diagnosis_of(
             *_steadied(found),
             *([doubt] if doubt else ()),
             *([ASK_FOR_CHAIN] if base.transfer_functions and verdict == "unknown" else ()),
+            *([NUMBERS_BENT] if verdict == "unknown" and (start or updates) else ()),
         ),
         seconds=found.seconds,
         unfinished=_time_is_up(asked) if found.unfinished == OUT_OF_TIME else found.unfinished,
