@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.real_data.ced import CED
+from benchmarks.real_data.dfki import DFKI
 from benchmarks.real_data.embir import EMBIR
 from benchmarks.real_data.emps import EMPS
 from benchmarks.real_data.fditools import FDITOOLS
@@ -30,7 +31,7 @@ from hil.core.errors import HilError
 from hil.core.model import Model, save_model
 from hil.core.recording import Recording, write_recording
 
-DATA_SETS = {one.name: one for one in (EMPS, HSM150, LORENZ, LEXIUM62, EMBIR, *FDITOOLS, CED)}
+DATA_SETS = {one.name: one for one in (EMPS, HSM150, LORENZ, LEXIUM62, EMBIR, DFKI, *FDITOOLS, CED)}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

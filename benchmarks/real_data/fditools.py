@@ -55,12 +55,28 @@ def _by_drive(path: Path) -> Measured:
     return _split(_recording(path, current, dict(zip(OUTPUTS[:2], (motor, -load), strict=True))))
 
 
+def _numbers_of(_: Path, model: Model) -> str:
+    """What a model says of the shaft and the rotors, and how late it is."""
+    numbers, late = model.parameters, {"actuator_lag": "time_constant_s", "dead_time": "extra_delay_s"}
+    lag_s = [float(use.values[late[use.id]]) for use in model.effects if use.id in late]
+    inertias = f"{numbers['motor_inertia']:.5f} and {numbers['vehicle_inertia']:.5f} kg m2"
+    lags = "".join(f", lag {1e3 * one:.2f} ms" for one in lag_s)
+    return f"{numbers['shaft_stiffness']:.1f} N m/rad, {inertias}{lags}"
+
+
 def _data_set(name: str, letter: str, expected: str, *, drive: bool) -> DataSet:
     file = f"MultisineType{letter}.mat"
     read = _by_drive if drive else _by_encoders
     hidden = ("actuator_lag",) if drive else ()
     return DataSet(
-        name, (file,), expected, lambda directory: read(directory / file), "fditools", hidden, _FRICTION
+        name,
+        (file,),
+        expected,
+        lambda directory: read(directory / file),
+        "fditools",
+        hidden,
+        _FRICTION,
+        _numbers_of,
     )
 
 

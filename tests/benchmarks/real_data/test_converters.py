@@ -70,6 +70,13 @@ def _embir(directory):
     (directory / DATA_SETS["embir"].files[0]).write_text(text)
 
 
+def _dfki(directory):
+    rows = np.column_stack([_time(), np.zeros(_SAMPLES), _speed(), 1.7 * _speed()])
+    for name in DATA_SETS["dfki"].files:
+        (directory / name).parent.mkdir(exist_ok=True)
+        np.savetxt(directory / name, rows, delimiter=",", header="time,position,velocity,torque", comments="")
+
+
 def _fditools(directory):
     time = np.arange(50_000) / 2500.0
     speed = np.sin(2.0 * np.pi * 0.8 * time)
@@ -86,6 +93,7 @@ def _fditools(directory):
 
 
 WRITTEN = {
+    "dfki": _dfki,
     "embir": _embir,
     "emps": _emps,
     "hsm150": _hsm150,
@@ -95,6 +103,7 @@ WRITTEN = {
 }
 #: Torque in N m (force in N) at a speed of 1, which the files above hold in their own units.
 TORQUE = {
+    "dfki": 1.7,
     "embir": 0.1,
     "emps": 70.0,
     "hsm150": 70.0,
@@ -168,6 +177,7 @@ def test_a_model_is_judged_in_the_official_window(tmp_path):
 @pytest.mark.parametrize("name", sorted(DATA_SETS))
 def test_another_file_under_the_name_is_refused(name, tmp_path):
     for file in DATA_SETS[name].files:
+        (tmp_path / file).parent.mkdir(exist_ok=True)
         (tmp_path / file).write_text("<html>not found</html>")
     with pytest.raises(BadInputError, match=DATA_SETS[name].files[0].split(".")[0]):
         DATA_SETS[name].read(tmp_path)
