@@ -18,6 +18,7 @@ from hil.analysis.missing_effects._fit import (
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._linear import structures
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains
+from hil.analysis.missing_effects._phase import errors_of
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import (
     Scene,
@@ -37,7 +38,7 @@ _ASIDE = (0.98, 1.02)  # times an optional number that is set already: to see wh
 _FAR = (0.25, 0.5, 2.0, 4.0)  # times the same: a fit begins there, as a play has many minima
 _REACHES = (1.0, 0.25)  # how far another minimum is looked for: as far as usual, then near
 _MOST_NAMES = 4
-_NEAR_WHOLE = 0.05  # of an order
+_NEAR_WHOLE, _SURE = 0.05, 3.0  # of an order; standard errors
 
 
 def search(done: Candidates, show: Callable[[str], None]) -> None:
@@ -85,13 +86,17 @@ def _with_better_angles(done: Candidates, best: Candidate) -> Candidate:
 def _with_whole_orders(done: Candidates, best: Candidate) -> Candidate:
     """The likelier of a hypothesis and of its ripples fitted again from whole numbers of periods a turn.
 
-    Most ripples have one; where angles walk off, a fit from another order may end beside it.
+    Most ripples have one. Where angles walk off, a fit may end beside it, with errors that do not hold it.
     """
     hypothesis, kept = best.point.hypothesis, (done.problem, done.values)
     for index, use in enumerate(hypothesis.terms):
-        whole = round(float(use.values.get("order", 0.0)))
-        if 0.0 < abs(float(use.values.get("order", whole)) - whole) < _NEAR_WHOLE and whole:
-            hypothesis = hypothesis.with_values(index, {"order": float(whole)}, hypothesis.opened[index])
+        off = float(use.values["order"]) - round(float(use.values["order"])) if "order" in use.values else 0.0
+        if (
+            0.0 < abs(off) < _NEAR_WHOLE
+            and abs(off) > _SURE * errors_of(done.problem, best.point, use)["order"]
+        ):
+            whole = {"order": float(use.values["order"]) - off}
+            hypothesis = hypothesis.with_values(index, whole, hypothesis.opened[index])
     if hypothesis is best.point.hypothesis:
         return best
     tried = _with_better_angles(done, done.at(hypothesis, best))

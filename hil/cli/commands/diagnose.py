@@ -27,8 +27,10 @@ def execute(options: Diagnose) -> int:
     if options.json_:
         print_json(outcome.summary)
     else:
+        told = {note.partition(": ")[2] for note in outcome.found.notes}  # of the recordings that were fitted
         for line in reading_in_words(outcome.summary["read"]):
-            print(line)
+            if line.split(": ", 2)[2] not in told:
+                print(line)
         print(text_of(outcome.found, outcome.folder))
     return EXIT_CODE if outcome.found.unfinished == INTERRUPTED else 0
 
