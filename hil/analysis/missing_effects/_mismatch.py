@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -125,10 +125,12 @@ def mismatches(
     best: Candidate,
     as_the_base: frozenset[str],
     gains: Mapping[str, tuple[str, ...]],
+    weighed: Sequence[tuple[Candidate, float]],
 ) -> list[Named]:
     """Numbers that are wrong by more than their tolerance and doubt, each with the probability of that.
 
-    It is shared with `gains` that explain the data as well. Beside an effect, which bends numbers as well,
+    Hypotheses count (`weighed`, by their posterior) in which it moved. It is shared with `gains` that explain
+    the data as well. Beside an effect, which bends numbers as well,
     those that are effects by themselves: a dead time, a drag. One that moves no channel by more than what no
     model is right to says nothing.
     """
@@ -139,18 +141,29 @@ def mismatches(
         if best.names and (name in as_the_base or not _stands_beside(name, best, done.problem.model)):
             continue
         moved, doubt = _off(name, numbers, done)
-        sure = float(ndtr((moved - 1.0) / max(doubt, 1e-12)))
+        alike = gains.get(name, ())
+        sure = float(ndtr((moved - 1.0) / max(doubt, 1e-12))) * sum(
+            weight
+            for one, weight in weighed
+            if _has_left(one, name, done) or not {*alike}.isdisjoint(one.names)
+        )
         if sure >= HALF and moved - 1.0 > doubt and _shows(done.problem, best.point, name):
             found.append(
                 Named(
                     EffectUse("parameter_mismatch", {"parameter": name, "value": value}),
                     sure,
                     {"value": as_known(done.problem, numbers)[name][2]},
-                    alike := gains.get(name, ()),
+                    alike,
                     EFFECTS["sensor_gain"].shown_by if alike else "",
                 )
             )
     return found
+
+
+def _has_left(one: Candidate, name: str, done: Candidates) -> bool:
+    """Whether a number is off by more than its tolerance in a hypothesis."""
+    base = done.problem.model.parameters[name]
+    return bool(abs(one.point.hypothesis.numbers[name] - base) > _tolerance(name, base, done))
 
 
 def _off(

@@ -107,7 +107,9 @@ def judged(of: Judged) -> Outcome:
         named = _named(best, index, errors, candidates, weights, rivals, shares[index])
         (effects if named.confidence >= HALF else doubtful).append(named)
     if _may_be_off(of, at):
-        effects += mismatches(done, numbers, best, as_the_base, gains)
+        effects += mismatches(
+            done, numbers, best, as_the_base, gains, [*zip(candidates, weights, strict=True)]
+        )
     if done.problem.is_noise(best.point.errors):
         effects += _roundings(done, float(weights[candidates.index(best)]))
     verdict: Verdict = "unknown"
