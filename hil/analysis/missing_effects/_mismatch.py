@@ -130,14 +130,13 @@ def mismatches(
     """Numbers that are wrong by more than their tolerance and doubt, each with the probability of that.
 
     Hypotheses count (`weighed`, by their posterior) in which it moved. It is shared with `gains` that explain
-    the data as well. Beside an effect, which bends numbers as well,
-    those that are effects by themselves: a dead time, a drag. One that moves no channel by more than what no
-    model is right to says nothing.
+    the data as well. Beside an effect, which bends numbers as well, those that are effects by themselves: a
+    dead time, a drag. One that moves no channel by more than what no model is right to says nothing.
     """
     from scipy.special import ndtr
 
     found = []
-    for name, (_, value, _) in numbers.items():
+    for name, (_, value, error) in as_known(done.problem, numbers).items():
         if best.names and (name in as_the_base or not _stands_beside(name, best, done.problem.model)):
             continue
         moved, doubt = _off(name, numbers, done)
@@ -152,7 +151,7 @@ def mismatches(
                 Named(
                     EffectUse("parameter_mismatch", {"parameter": name, "value": value}),
                     sure,
-                    {"value": as_known(done.problem, numbers)[name][2]},
+                    {"value": error},
                     alike,
                     EFFECTS["sensor_gain"].shown_by if alike else "",
                 )

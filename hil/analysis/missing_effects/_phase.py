@@ -52,7 +52,8 @@ def tracked(problem: Problem, point: Point) -> tuple[Problem, Hypothesis]:
     read = problem.each(lambda index: problem.series[index].angles(ratio))
     angles = problem.each(lambda index: walks[index].likelier(turned.angles[index], read[index]))
     for index in ripples:
-        walks = _walks(by_noise, replace(point, hypothesis=hypothesis))
+        if hypothesis is not point.hypothesis:  # the ripple before has moved
+            walks = _walks(by_noise, replace(point, hypothesis=hypothesis))
         followed = _Followed(by_noise, walks, hypothesis.terms[index], angles)
         angles = followed.walked()
         hypothesis = hypothesis.with_values(index, followed.order_and_phase(), hypothesis.opened[index])

@@ -169,8 +169,9 @@ def series_of(model: Model, recordings: Sequence[Recording], step_s: float = 0.0
             pieces += [piece for whole in excerpts(part) for piece in _moving(model, whole)]
     for piece in pieces:
         _refuse_too_little(piece)
-    step_s = step_s or max((even_times(at_true_times(one).time_s)[1] for one in pieces), default=0.0)
-    found = [_series(model, piece, step_s) for piece in pieces]
+    timed = [_timed(piece) for piece in pieces]
+    step_s = step_s or max((dt for *_, dt in timed), default=0.0)
+    found = [_series(model, *one, step_s) for one in timed]
     if is_regulated(model) and not any(one.has.any() for one in found):
         raise BadInputError(
             "the recordings have nothing beside the speed that the wheels are held at",
@@ -248,10 +249,18 @@ def _notes(recording: Recording, uneven: str, dt: float) -> list[str]:
     return notes
 
 
-def _series(model: Model, recording: Recording, step_s: float) -> Series:
-    stamps, recording = recording.time_s, at_true_times(recording)
+def _timed(recording: Recording) -> tuple[Recording, Array, float]:
+    """A stretch at the times of its clock, its own even times, and how far these are apart."""
+    true = at_true_times(recording)
+    grid, dt = even_times(true.time_s)
+    if true is not recording:
+        true = replace(true, notes=[*true.notes, jittered(dt)])
+    return true, grid, dt
+
+
+def _series(model: Model, recording: Recording, grid: Array, dt: float, step_s: float) -> Series:
+    """A stretch on its own even times, `dt` apart, or on such as others have."""
     time = recording.time_s
-    grid, dt = even_times(time)
     is_other = abs(dt - step_s) > _ALIKE * dt
     if is_other:
         grid, dt = np.arange(time[0], time[-1], step_s), step_s
@@ -264,7 +273,6 @@ def _series(model: Model, recording: Recording, step_s: float) -> Series:
 
     samples, angle = np.full((2, len(grid), len(OUTPUTS)), np.nan)
     of_angle, notes = by_angle(recording), [*recording.notes, *_notes(recording, uneven, dt)]
-    notes += [jittered(dt)] if time is not stamps else []
     for column, name in enumerate(OUTPUTS):
         if of_angle[column]:
             angle[:, column] = angle_at(recording, ANGLES[name], grid)

@@ -218,19 +218,15 @@ def _twins(done: Candidates, best: Candidate, least: float) -> None:
     behind where numbers have moved.
     """
     hypothesis = best.point.hypothesis
-    places = [
-        (fewer, twins_of(done, fewer, use))
-        for index, use in enumerate(hypothesis.terms)
-        for fewer in [hypothesis.without(index)]
-    ]
+    places = [(hypothesis.without(index), use) for index, use in enumerate(hypothesis.terms)]
+    twins = [(fewer, twin) for fewer, use in places for twin in twins_of(done, fewer, use)]
     if not best.names and done.has_moved(best):
-        places = [(hypothesis, gains_of(done, hypothesis))]
-    for fewer, twins in places:
-        for twin in twins:
-            if label_of(twin) not in best.names:
-                rival = replace(fewer, terms=(), opened=()).with_term(twin)
-                for begins in _in_its_place(done, best, fewer, rival, least):
-                    done.fitted(begins, best, at_least=least)
+        twins = [(hypothesis, gain) for gain in gains_of(done, hypothesis)]
+    for fewer, twin in twins:
+        if label_of(twin) not in best.names:
+            rival = replace(fewer, terms=(), opened=()).with_term(twin)
+            for begins in _in_its_place(done, best, fewer, rival, least):
+                done.fitted(begins, best, at_least=least)
 
 
 def _in_its_place(

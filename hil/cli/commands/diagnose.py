@@ -27,10 +27,11 @@ def execute(options: Diagnose) -> int:
     if options.json_:
         print_json(outcome.summary)
     else:
-        told = {note.partition(": ")[2] for note in outcome.found.notes}  # of the recordings that were fitted
-        for line in reading_in_words(outcome.summary["read"]):
-            if line.split(": ", 2)[2] not in told:
-                print(line)
+        again = {note.partition(": ")[2] for note in outcome.found.notes}  # by the recordings' names
+        read = outcome.summary["read"].items()
+        first = {path: {"notes": [note for note in one["notes"] if note not in again]} for path, one in read}
+        for line in reading_in_words(first):
+            print(line)
         print(text_of(outcome.found, outcome.folder))
     return EXIT_CODE if outcome.found.unfinished == INTERRUPTED else 0
 
