@@ -90,12 +90,14 @@ def _with_whole_orders(done: Candidates, best: Candidate) -> Candidate:
     """
     hypothesis, kept = best.point.hypothesis, (done.problem, done.values)
     for index, use in enumerate(hypothesis.terms):
-        off = float(use.values["order"]) - round(float(use.values["order"])) if "order" in use.values else 0.0
+        order = float(use.values.get("order", 0.0))
+        off = abs(order - round(order))
         if (
-            0.0 < abs(off) < _NEAR_WHOLE
-            and abs(off) > _SURE * errors_of(done.problem, best.point, use)["order"]
+            order > 0.5
+            and 0.0 < off < _NEAR_WHOLE
+            and off > _SURE * errors_of(done.problem, best.point, use)["order"]
         ):
-            whole = {"order": float(use.values["order"]) - off}
+            whole = {"order": float(round(order))}
             hypothesis = hypothesis.with_values(index, whole, hypothesis.opened[index])
     if hypothesis is best.point.hypothesis:
         return best

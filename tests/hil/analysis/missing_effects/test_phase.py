@@ -13,6 +13,7 @@ from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._noise import proven_noise
 from hil.analysis.missing_effects._phase import errors_of, tracked
 from hil.analysis.missing_effects._problem import Problem, problem_of
+from hil.analysis.missing_effects._search import _with_whole_orders
 from hil.analysis.missing_effects._series import series_of
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
@@ -95,3 +96,13 @@ def test_an_order_is_known_as_far_as_angles_are(seed: int) -> None:
     assert abs(float(found["order"]) - _ORDER) < 3.0 * errors["order"]
     assert abs(float(found["phase_rad"]) - 0.4) < 3.0 * errors["phase_rad"]
     assert 1e-4 < errors["order"] < 2e-2
+
+
+def test_an_order_below_one_has_no_whole_one_beside_it() -> None:
+    """Nothing turns by no period a turn."""
+    problem, _ = _problem(1)
+    slow = EffectUse("motor_order_ripple", {**_ripple(1.5).values, "order": 0.04})
+    hypothesis = Hypothesis(_CHAIN, dict(_CHAIN.parameters)).with_term(slow)
+    done = Candidates(problem)
+    best = done.judged(point_at(problem, hypothesis))
+    assert _with_whole_orders(done, best) is best
