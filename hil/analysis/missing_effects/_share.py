@@ -60,7 +60,7 @@ def share_of(
     of: Judged, fewer: Candidate, best: Candidate, at: Linearised, index: int, wrong: Array | float = 0.0
 ) -> float:
     """What an effect takes off over that and what stays, where it lasts; 0 where its size is not known."""
-    if not (_is_sized(at, index) and _is_line(of.done, at, index)):
+    if not (_is_sized(at, index) and _is_line(of.done, at, index) and _turns_around(of.done, at, index)):
         return 0.0
     lasts = constancy(of.done.problem, at, index, of.done.cost_of_a_number(best))
     return (1.0 - _remains(of, fewer, best, wrong)) * lasts
@@ -90,8 +90,7 @@ def is_linear(use: EffectUse) -> bool:
 def _is_sized(at: Linearised, index: int) -> bool:
     """Whether a number by which an effect acts is known to half of itself.
 
-    Else another law is all that it takes: friction that turns over many radians is a spring. Nor is it
-    friction where nothing but its offset acts, which has a sign.
+    Nor is it friction where nothing but its offset acts, which has a sign.
     """
     use = at.point.hypothesis.terms[index]
     effect = EFFECTS[use.id]
@@ -99,6 +98,15 @@ def _is_sized(at: Linearised, index: int) -> bool:
     names = [name for name in free if effect.parameter(name).lower >= 0.0] or free
     sizes = {name: abs(float(use.values[name]) - effect.off) for name in names}
     return not names or any(at.standard_error(index, name) < HALF * size for name, size in sizes.items())
+
+
+def _turns_around(done: Candidates, at: Linearised, index: int) -> bool:
+    """Whether a rotor turns so far that friction comes to its level, as far as laws are right.
+
+    It nears that exponentially; over less of an angle it is a spring.
+    """
+    over = float(at.point.hypothesis.terms[index].values.get("turn_rad", 0.0))
+    return -math.log(LAW) * over <= 2.0 * math.pi * turns(done.problem, "rotor")
 
 
 def _is_line(done: Candidates, at: Linearised, index: int) -> bool:

@@ -157,3 +157,10 @@ def _by_encoder(one: Recording) -> Recording:
     angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))]) * one.sample_time_s
     channels = {name: one[name] for name in ("time_s", "motor_torque_ref_nm")}
     return Recording(channels | {"motor_angle_rad": np.round(angle / 2e-3) * 2e-3}, one.source)
+
+
+@pytest.mark.parametrize("torque_nm", [1.0, 2.0])
+def test_gravity_over_less_than_half_a_turn_is_no_friction(torque_nm: float) -> None:
+    """It is a spring, as is dry friction that turns around over more than the arm turns."""
+    found = _asked(base(0.54, 1.0), 0.54, 1.0, 0.0, 4.0, torque_nm=torque_nm)
+    assert "coulomb_friction" not in [one.id for one in found.effects]

@@ -194,3 +194,11 @@ def test_what_moves_is_more_than_noise() -> None:
     series = one_series(**{WHEEL: np.random.default_rng(0).normal(0.0, 0.02, 20_000)})
     noise = proven_noise([series], {})
     assert [moves(series, column, noise) for column in range(3)] == [True, False, True]
+
+
+@pytest.mark.parametrize(("share", "frozen"), [(0.01, False), (0.5, True)])
+def test_a_servo_that_stands_still_at_one_step_of_its_speed_is_data(share: float, frozen: bool) -> None:
+    """An encoder at rest reads the same again and again, if not just zero; at speed nothing does."""
+    values = chirp(speed=0.0)[MOTOR].copy()
+    values[5000:5800] = share * np.max(np.abs(values))
+    assert bool(refused(one_series(**{MOTOR: values}))) is frozen
