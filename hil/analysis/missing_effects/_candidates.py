@@ -118,12 +118,16 @@ class Candidates:
 
         Args:
             held: numbers of the base that stay what they are.
-            at_least: a score; a fit ends where neither its last round nor its numbers promise to reach it.
+            at_least: a score; a fit ends where neither its last round nor its numbers promise to reach it, or
+                does not begin where none of `near` has moved.
         """
         goes_on = near is not None and near.point.hypothesis is hypothesis
         point = near.point if near and goes_on else self._begun(hypothesis, near)
         best = before = self.judged(point)
         problem = self.problem
+        is_near = near is not None and not (goes_on or hypothesis.is_abrupt or self.has_moved(near))
+        if at_least > -math.inf and is_near and self.may_reach(best) < at_least:
+            return best
         if goes_on:
             problem = self.weighed_as(best)
         elif hypothesis.kind == "rigid":  # slow errors of a mass are friction; a chain's bend its resonances

@@ -195,8 +195,8 @@ def _spectra(one: Series) -> tuple[int, Array, ComplexArray, Array]:
     )
 
 
-def structures(problem: Problem) -> list[Hypothesis]:
-    """Numbers alone by the responses, then with each linear effect that they pay for, best first.
+def structures(problem: Problem) -> list[tuple[Hypothesis, float]]:
+    """Numbers alone by the responses, then with each linear effect that they pay for, and how much, best first.
 
     Empty where there are no responses. Behind a base whose numbers a descent puts right, effects are left to
     the fit in time.
@@ -207,9 +207,9 @@ def structures(problem: Problem) -> list[Hypothesis]:
     base = Hypothesis(problem.model, dict(problem.model.parameters))
     near = responses.fitted(base)
     alone = max((near, _best(responses, _scattered(responses, [base]))), key=responses.posterior)
-    found = [(0.0, alone)]
+    found: list[tuple[Hypothesis, float]] = []
     if responses.most() - responses.log_likelihood(alone) < ALIKE:
-        return [alone]
+        return [(alone, 0.0)]
     for effect in EFFECTS.values():
         if effect.law.chain is None or not may_join(effect, alone):
             continue
@@ -223,8 +223,8 @@ def structures(problem: Problem) -> list[Hypothesis]:
         cost = 0.5 * np.log(responses.powers(best).values(problem.noise)) * (len(best.terms[0].values) + 1)
         gain = responses.posterior(best) - responses.posterior(alone) - cost
         if gain > 0.0:
-            found.append((gain, best))
-    return [alone, *(one for _, one in sorted(found[1:], key=lambda pair: -pair[0]))]
+            found.append((best, gain))
+    return [(alone, 0.0), *sorted(found, key=lambda pair: -pair[1])]
 
 
 def _best(responses: Responses, starts: Sequence[Hypothesis]) -> Hypothesis:

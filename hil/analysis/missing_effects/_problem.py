@@ -213,8 +213,8 @@ class Problem:
         numbers[:, -room:] = beginning
         return numbers
 
-    def by_octave(self, index: int, rows: Array) -> Array:
-        """Products of rows of `weighed` numbers with each other, 3 x bands x rows x rows."""
+    def by_octave(self, index: int, rows: Array) -> tuple[Array, Array]:
+        """Products of rows of `weighed` numbers with each other: 3 x bands x rows x rows, and of the rest."""
         one = self.series[index]
         return self.spectrum.by_octave(rows, one.has, len(one.measured), one.rate_hz)
 

@@ -31,14 +31,14 @@ _SETTLED = 0.1  # growth of log L between rounds that ends them
 
 @dataclass(frozen=True)
 class Products:
-    """Of weighed changes (k), slopes of the numbers and the misfit with each other: `whole`, and by octaves.
+    """Of weighed changes (k), slopes of the numbers and the misfit with each other: by octaves, and the rest.
 
-    (k + numbers + 1) squared, and 3 x bands of it. `abrupt`: of which hypotheses outputs do not go straight.
+    3 x bands of (k + numbers + 1) squared, and that. `abrupt`: of which hypotheses outputs do not go straight.
     """
 
     abrupt: tuple[bool, ...]
-    whole: Array
     octaves: Array
+    rest: Array
 
     @property
     def count(self) -> int:
@@ -77,8 +77,8 @@ class Projection:
             without(self.at.bases[index], change.T)
             return self._products(index, change)
 
-        whole, octaves = (sum(parts) for parts in zip(*self.problem.each(of), strict=True))
-        return Products(tuple(one.is_abrupt for one in hypotheses), whole, octaves)
+        octaves, rest = (sum(parts) for parts in zip(*self.problem.each(of), strict=True))
+        return Products(tuple(one.is_abrupt for one in hypotheses), octaves, rest)
 
     @cached_property
     def alone(self) -> Explained:
@@ -86,14 +86,14 @@ class Projection:
         each = self.problem.each(
             lambda index: self._products(index, np.empty((0, len(self.at.bases[index]))))
         )
-        whole, octaves = (sum(parts) for parts in zip(*each, strict=True))
-        return self._taken_off(Products((), whole, octaves), slice(0), ())
+        octaves, rest = (sum(parts) for parts in zip(*each, strict=True))
+        return self._taken_off(Products((), octaves, rest), slice(0), ())
 
     def _products(self, index: int, change: Array) -> tuple[Array, Array]:
         """Of changes of a recording's weighed outputs, slopes of the numbers, and the misfit."""
         here = slice(*self.ends[index : index + 2])
         rows = np.concatenate([change, self.at.slopes[here].T, self.at.left[None, here]])
-        return rows @ rows.T, self.problem.by_octave(index, rows)
+        return self.problem.by_octave(index, rows)
 
     def explained(self, of: Products, which: slice, directions: Sequence[Direction]) -> Explained:
         """The best factors of directions within bounds.
@@ -110,14 +110,13 @@ class Projection:
         Each round weighs octaves by what the one before left of them, as those of a fit do. Where outputs do
         not go straight so much is not known: one round.
         """
-        rows = np.arange(len(of.whole))
+        rows = np.arange(len(of.rest))
         parts = np.concatenate([rows[which], rows[of.count :]])
-        whole, octaves = (matrix[..., parts[:, None], parts] for matrix in (of.whole, of.octaves))
-        if not np.all(np.isfinite(whole)):
+        octaves, rest = (matrix[..., parts[:, None], parts] for matrix in (of.octaves, of.rest))
+        if not (np.all(np.isfinite(octaves)) and np.all(np.isfinite(rest))):
             return Explained([1.0] * len(directions), np.zeros(len(self.at.coordinates)), -math.inf)
         noise, changes = self.problem.noise, slice(0, len(directions))
         numbers, misfit = slice(len(directions), -1), -1
-        rest = whole - octaves.sum(axis=(0, 1))
         prior = np.column_stack([one[self.ends[-1] :] for one in (self.at.slopes, self.at.left)])
         if not self.is_far:  # numbers that are far off would not all come back
             rest[len(directions) :, len(directions) :] += prior.T @ prior

@@ -111,13 +111,13 @@ def promises(
     """All sizes of every effect that may be added to a point, each with what it promises.
 
     Args:
-        asked: which effects are looked at; all of them when left out.
+        asked: which effects are looked at, by their ids; all of them when left out.
     """
     leaps = problem.model.kind == "rigid" and any(one.has[2] for one in problem.series)
     if leaps:  # its shaft torque with a delay, where a slope sees it glide
         at = at.holding([one.name == "torque_delay" for one in at.coordinates])
     project = Projection(problem, at)
-    joining = [one for one in _asked(Scene(problem, at.point.hypothesis, at.point)) if asked(one[0][0])]
+    joining = list(_asked(Scene(problem, at.point.hypothesis, at.point), asked))
     found = _promised(project, [one for one in joining if one[1].first])
     best: dict[str, tuple[float, int]] = {}
     for promise, place in found:
@@ -148,10 +148,12 @@ def _promised(
     return found
 
 
-def _asked(scene: Scene) -> Iterator[tuple[list[EffectUse], Probe]]:
+def _asked(
+    scene: Scene, asked: Callable[[EffectUse], bool]
+) -> Iterator[tuple[list[EffectUse], Probe]]:
     """All sizes of the effects that may join, with the uses whose changes add up to each."""
     for effect in EFFECTS.values():
-        if may_join(effect, scene.hypothesis):
+        if asked(EffectUse(effect.id, {})) and may_join(effect, scene.hypothesis):
             for probe in probes_of(effect, scene):
                 uses = [EffectUse(effect.id, dict(one.values)) for one in probe.directions]
                 if not {label_of(use) for use in uses} & {*scene.hypothesis.names}:

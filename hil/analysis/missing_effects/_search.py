@@ -51,7 +51,7 @@ def search(done: Candidates, show: Callable[[str], None]) -> None:
     """
     show("fitting the numbers alone")
     problem = done.problem
-    start, *linear = _starts(problem)
+    (start, _), *linear = _starts(problem)
     started = with_better_starts(problem, point_at(problem, start))
     done.problem = problem.weighed_by(started.powers(problem).spectrum(problem.noise))
     best = done.fitted(start, None)
@@ -108,37 +108,38 @@ def _with_whole_orders(done: Candidates, best: Candidate) -> Candidate:
     return best
 
 
-def _starts(problem: Problem) -> list[Hypothesis]:
-    """Numbers alone by the data, then with linear effects that responses show behind them.
+def _starts(problem: Problem) -> list[tuple[Hypothesis, float]]:
+    """Numbers alone by the data, then with linear effects that responses show behind them, and what these bring.
 
     Of a chain with shafts the base's own numbers stay where they are the likelier.
     """
     base = Hypothesis(problem.model, dict(problem.model.parameters))
     if problem.functions:
-        return [base]
+        return [(base, 0.0)]
     read = read_numbers(problem.model, problem.series)
-    found = [read] if read is not None else structures(problem)
+    found = [(read, 0.0)] if read is not None else structures(problem)
 
     def likelihood(one: Hypothesis) -> float:
         point = with_better_starts(problem, point_at(problem, one))
         return float(np.sum(point.powers(problem).log_likelihood(problem.noise)))
 
-    if read is None and (not found or likelihood(base) > likelihood(found[0])):
-        found = [base, *found[1:]]
+    if read is None and (not found or likelihood(base) > likelihood(found[0][0])):
+        found = [(base, 0.0), *found[1:]]
     return found
 
 
 def _grown(
-    done: Candidates, best: Candidate, linear: Sequence[Hypothesis], show: Callable[[str], None]
+    done: Candidates, best: Candidate, linear: Sequence[tuple[Hypothesis, float]], show: Callable[[str], None]
 ) -> Candidate | None:
     """The best hypothesis with one more effect; None where no effect promises more than it costs.
 
-    `linear` are hypotheses that responses suggest.
+    `linear` are hypotheses that responses suggest, and what these bring.
 
     Losses (friction, drag, resistance), which every driveline has, are tried before rarer names: where one
-    takes off half of what stays or more, only those are looked at that promise half of what it brought.
+    takes off half of what stays or more, only those are looked at that promise half of what it brought beside
+    the numbers that are fitted: of what responses suggest that is not known.
     """
-    suggested = [*((one, math.inf) for one in linear), *_suggested(done, best)]
+    suggested = sorted([*linear, *_suggested(done, best)], key=lambda one: -one[1])
     losses = [one for one in suggested if is_loss(one[0].terms[-1])]
     rarer = [one for one in suggested if not is_loss(one[0].terms[-1])]
     grown = _best_of(done, best, losses, show)
@@ -147,7 +148,7 @@ def _grown(
         had, has = (done.problem.mean_square(one.point.errors) for one in (best, grown))
         if remains(had, has, done.problem.noise**2, done.problem.noise**2) <= HALF:
             brought = HALF * (grown.log_likelihood - best.log_likelihood)
-            rarer = [one for one in rarer if brought < one[1] < math.inf]
+            rarer = [one for one in rarer if brought < one[1] < math.inf and one not in linear]
     others = _best_of(done, best, rarer, show)
     return max((one for one in (grown, others) if one is not None), key=done.score, default=None)
 
@@ -265,8 +266,11 @@ def _suggested(done: Candidates, best: Candidate) -> list[tuple[Hypothesis, floa
         (_likelier(done, best, one, best.point.hypothesis.with_term(one.terms[-1], one.opened[-1])), math.inf)
         for one in (by_name[names] for names in order)
     ]
-    promised = promises(done.problem, linearised(done.problem, best.point))
     least = done.least(best)
+    beside = _beside_the_base(done, best, least)
+    if any(gain > HALF * done.problem.most_to_gain(best.point.errors) for _, gain in beside):
+        return sorted([*found, *beside], key=lambda one: -one[1])  # others promise less from where that is
+    promised = promises(done.problem, linearised(done.problem, best.point))
     for sizes in best_by_name([one for one in promised if one.gain > least], _RIVALS):
         abrupt = EFFECTS[sizes[0].use.id].abrupt
         for one in sizes if abrupt else sizes[:1]:
@@ -275,8 +279,7 @@ def _suggested(done: Candidates, best: Candidate) -> list[tuple[Hypothesis, floa
         elsewhere = _as_elsewhere(done, best, sizes[0].label)
         if elsewhere:
             found.append((_likelier(done, best, *elsewhere), sizes[0].gain))
-    found += _beside_the_base(done, best, least)
-    return sorted(found, key=lambda one: -one[1])
+    return sorted([*found, *beside], key=lambda one: -one[1])
 
 
 def _as_elsewhere(done: Candidates, best: Candidate, label: str) -> list[Hypothesis]:
@@ -309,7 +312,7 @@ def _beside_the_base(done: Candidates, best: Candidate, least: float) -> list[tu
     if behind < least:
         return []
     problem = done.weighed_as(near)
-    promised = promises(problem, linearised(problem, near.point))
+    promised = promises(problem, linearised(problem, near.point), _is_no_ripple)
     most = HALF * max([behind, *(one.gain for one in promised)])
     promised = [one for one in promised if one.gain > most]
     found = []
@@ -320,6 +323,11 @@ def _beside_the_base(done: Candidates, best: Candidate, least: float) -> list[tu
             starts = held.point.hypothesis, one.numbers.with_term(one.use)
             found.append((_likelier(done, near, *starts), max(ahead, one.gain - behind)))
     return found
+
+
+def _is_no_ripple(use: EffectUse) -> bool:
+    """Whether numbers of a base may look like an effect: like a ripple they do not."""
+    return EFFECTS[use.id].law.follows is None
 
 
 def _likelier(done: Candidates, near: Candidate, *starts: Hypothesis) -> Hypothesis:

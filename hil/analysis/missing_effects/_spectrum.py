@@ -83,20 +83,22 @@ class Spectrum:
             transform *= weights
         return out
 
-    def by_octave(self, rows: Array, channels: Channels, blocks: int, rate_hz: float) -> Array:
-        """Products of rows of `weighed` numbers with each other, 3 x bands x rows x rows."""
+    def by_octave(
+        self, rows: Array, channels: Channels, blocks: int, rate_hz: float
+    ) -> tuple[Array, Array]:
+        """Products of rows with each other: of `weighed` numbers 3 x bands x rows x rows, of those behind."""
         firsts, window = _windows(blocks, rate_hz)
         bands = _bands(self.edges_hz, len(window), rate_hz)
         seen = np.flatnonzero(channels)
         shape = (len(rows), len(seen), len(firsts), 2 * len(bands))
-        numbers = rows[:, : math.prod(shape[1:])].reshape(shape)
+        numbers, behind = rows[:, : math.prod(shape[1:])].reshape(shape), rows[:, math.prod(shape[1:]) :]
         found = np.zeros((len(channels), len(self.edges_hz) - 1, len(rows), len(rows)))
         edges = 2 * np.searchsorted(bands, np.arange(len(self.edges_hz)))
         for place, channel in enumerate(seen.tolist()):
             for band, (low, high) in enumerate(pairwise(edges.tolist())):
                 inside = numbers[:, place, :, low:high].reshape(len(rows), len(firsts) * (high - low))
                 found[channel, band] = inside @ inside.T
-        return found
+        return found, behind @ behind.T
 
     def rising(self, values: Array, channels: Channels, rate_hz: float) -> Array:
         """sets x blocks x channels as weighed numbers of the beginning, where windows weigh little.
