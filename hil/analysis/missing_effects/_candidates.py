@@ -20,7 +20,7 @@ from hil.analysis.missing_effects._odds import ALIKE, Candidate
 from hil.analysis.missing_effects._orders import count_of_orders
 from hil.analysis.missing_effects._phase import tracked
 from hil.analysis.missing_effects._problem import Problem
-from hil.analysis.missing_effects._projection import Projection
+from hil.analysis.missing_effects._projection import Explained, Projection
 from hil.analysis.missing_effects._screen import may_join
 from hil.core.effects import EFFECTS
 
@@ -29,6 +29,7 @@ GROWING = 1.0
 """Growth of log likelihood above which a fit goes on: what it lacks would look like another name."""
 MOST_ROUNDS = 4 * ROUNDS
 _TO_FIRST_ORDER = 2.0  # times what numbers promise may a fit bring
+_STRAIGHT = 0.5  # of a number, by which it may move and still go as it promises
 _OF_A_SAMPLE = (0.02, 0.25, 0.5, 0.75, 0.98)  # where a dead time may be within the sample that it ends in
 
 
@@ -97,14 +98,15 @@ class Candidates:
         powers = self.problem.powers(candidate.point.errors, once=once)
         return self.problem.weighed_by(powers.spectrum(self.problem.noise))
 
-    def promised(self, candidate: Candidate) -> float:
-        """Growth of log L that its numbers may still bring a candidate, weighed by what it leaves."""
+    def promised(self, candidate: Candidate) -> Explained:
+        """What its numbers may still bring a candidate, weighed by what it leaves."""
         problem = self.weighed_as(candidate)
-        return Projection(problem, linearised(problem, candidate.point)).alone.gain
+        return Projection(problem, linearised(problem, candidate.point)).alone
 
-    def may_reach(self, candidate: Candidate) -> float:
-        """The score to which its numbers may still bring a candidate."""
-        return self.score(candidate) + _TO_FIRST_ORDER * max(self.promised(candidate), 0.0)
+    def may_reach(self, candidate: Candidate, promised: Explained | None = None) -> float:
+        """The score to which its numbers may still bring a candidate, by what they promise."""
+        gain = (promised or self.promised(candidate)).gain
+        return self.score(candidate) + _TO_FIRST_ORDER * max(gain, 0.0)
 
     def fitted(
         self,
@@ -119,15 +121,17 @@ class Candidates:
         Args:
             held: numbers of the base that stay what they are.
             at_least: a score; a fit ends where neither its last round nor its numbers promise to reach it, or
-                does not begin where none of `near` has moved.
+                does not begin where these promise to move so little that they may be believed.
         """
         goes_on = near is not None and near.point.hypothesis is hypothesis
         point = near.point if near and goes_on else self._begun(hypothesis, near)
         best = before = self.judged(point)
         problem = self.problem
-        is_near = near is not None and not (goes_on or hypothesis.is_abrupt or self.has_moved(near))
-        if at_least > -math.inf and is_near and self.may_reach(best) < at_least:
-            return best
+        if at_least > -math.inf and not (goes_on or hypothesis.is_abrupt):
+            promised = self.promised(best)
+            goes_straight = np.max(np.abs(promised.moves), initial=0.0) < _STRAIGHT
+            if goes_straight and self.may_reach(best, promised) < at_least:
+                return best
         if goes_on:
             problem = self.weighed_as(best)
         elif hypothesis.kind == "rigid":  # slow errors of a mass are friction; a chain's bend its resonances

@@ -196,7 +196,7 @@ def _spectra(one: Series) -> tuple[int, Array, ComplexArray, Array]:
 
 
 def structures(problem: Problem) -> list[tuple[Hypothesis, float]]:
-    """Numbers alone by the responses, then with each linear effect that they pay for, and how much, best first.
+    """Numbers alone by the responses, then with linear effects that they pay for, best first, with the gain.
 
     Empty where there are no responses. Behind a base whose numbers a descent puts right, effects are left to
     the fit in time.

@@ -129,9 +129,10 @@ def mismatches(
 ) -> list[Named]:
     """Numbers that are wrong by more than their tolerance and doubt, each with the probability of that.
 
-    Hypotheses count (`weighed`, by their posterior) in which it moved. It is shared with `gains` that explain
-    the data as well. Beside an effect, which bends numbers as well, those that are effects by themselves: a
-    dead time, a drag. One that moves no channel by more than what no model is right to says nothing.
+    Hypotheses count (`weighed`, by their posterior), each by how far the number moved in it. It is shared
+    with `gains` that explain the data as well. Beside an effect, which bends numbers as well, those that are
+    effects by themselves: a dead time, a drag. One that moves no channel by more than what no model is right
+    to says nothing.
     """
     from scipy.special import ndtr
 
@@ -141,11 +142,11 @@ def mismatches(
             continue
         moved, doubt = _off(name, numbers, done)
         alike = gains.get(name, ())
-        sure = float(ndtr((moved - 1.0) / max(doubt, 1e-12))) * sum(
-            weight
-            for one, weight in weighed
-            if _has_left(one, name, done) or not {*alike}.isdisjoint(one.names)
-        )
+        sure = 0.0
+        for one, weight in weighed:
+            stands_in = not {*alike}.isdisjoint(one.names)
+            here = moved if stands_in else _away(name, one.point.hypothesis.numbers[name], done)
+            sure += weight * float(ndtr((here - 1.0) / max(doubt, 1e-12)))
         if sure >= HALF and moved - 1.0 > doubt and _shows(done.problem, best.point, name):
             found.append(
                 Named(
@@ -159,19 +160,18 @@ def mismatches(
     return found
 
 
-def _has_left(one: Candidate, name: str, done: Candidates) -> bool:
-    """Whether a number is off by more than its tolerance in a hypothesis."""
-    base = done.problem.model.parameters[name]
-    return bool(abs(one.point.hypothesis.numbers[name] - base) > _tolerance(name, base, done))
-
-
 def _off(
     name: str, numbers: Mapping[str, tuple[float, float, float]], done: Candidates
 ) -> tuple[float, float]:
     """How far a number moved and how sure that is, both in tolerances."""
     base, found, error = numbers[name]
-    tolerance = _tolerance(name, base, done)
-    return abs(found - base) / tolerance, error / tolerance
+    return _away(name, found, done), error / _tolerance(name, base, done)
+
+
+def _away(name: str, found: float, done: Candidates) -> float:
+    """How far a number is from what the base says, in tolerances."""
+    base = done.problem.model.parameters[name]
+    return abs(found - base) / _tolerance(name, base, done)
 
 
 def _tolerance(name: str, base: float, done: Candidates) -> float:

@@ -33,7 +33,7 @@ _SETTLED = 0.1  # growth of log L between rounds that ends them
 class Products:
     """Of weighed changes (k), slopes of the numbers and the misfit with each other: by octaves, and the rest.
 
-    3 x bands of (k + numbers + 1) squared, and that. `abrupt`: of which hypotheses outputs do not go straight.
+    3 x bands of (k + numbers + 1) squared, and that. `abrupt`: whose outputs do not go straight.
     """
 
     abrupt: tuple[bool, ...]

@@ -148,9 +148,7 @@ def _promised(
     return found
 
 
-def _asked(
-    scene: Scene, asked: Callable[[EffectUse], bool]
-) -> Iterator[tuple[list[EffectUse], Probe]]:
+def _asked(scene: Scene, asked: Callable[[EffectUse], bool]) -> Iterator[tuple[list[EffectUse], Probe]]:
     """All sizes of the effects that may join, with the uses whose changes add up to each."""
     for effect in EFFECTS.values():
         if asked(EffectUse(effect.id, {})) and may_join(effect, scene.hypothesis):

@@ -109,7 +109,7 @@ def _with_whole_orders(done: Candidates, best: Candidate) -> Candidate:
 
 
 def _starts(problem: Problem) -> list[tuple[Hypothesis, float]]:
-    """Numbers alone by the data, then with linear effects that responses show behind them, and what these bring.
+    """Numbers alone by the data, then with linear effects that responses show behind them, with their gain.
 
     Of a chain with shafts the base's own numbers stay where they are the likelier.
     """
@@ -318,7 +318,7 @@ def _beside_the_base(done: Candidates, best: Candidate, least: float) -> list[tu
     found = []
     for one, *_ in best_by_name(promised, 1):
         held = done.fitted(base.with_term(one.use), near, held=frozenset(base.numbers))
-        ahead = done.score(held) + done.promised(held) - done.score(best)
+        ahead = done.score(held) + done.promised(held).gain - done.score(best)
         if max(ahead, one.gain - behind) > least:
             starts = held.point.hypothesis, one.numbers.with_term(one.use)
             found.append((_likelier(done, near, *starts), max(ahead, one.gain - behind)))

@@ -83,9 +83,7 @@ class Spectrum:
             transform *= weights
         return out
 
-    def by_octave(
-        self, rows: Array, channels: Channels, blocks: int, rate_hz: float
-    ) -> tuple[Array, Array]:
+    def by_octave(self, rows: Array, channels: Channels, blocks: int, rate_hz: float) -> tuple[Array, Array]:
         """Products of rows with each other: of `weighed` numbers 3 x bands x rows x rows, of those behind."""
         firsts, window = _windows(blocks, rate_hz)
         bands = _bands(self.edges_hz, len(window), rate_hz)

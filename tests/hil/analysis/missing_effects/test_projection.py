@@ -38,10 +38,10 @@ def test_a_promise_is_what_a_fit_reaches(hidden: EffectUse) -> None:
 def test_numbers_that_are_fitted_promise_nothing_alone() -> None:
     done = Candidates(chirp_problem(1.0))
     alone = done.fitted(Hypothesis(done.problem.model, dict(done.problem.model.parameters)), None)
-    assert done.promised(alone) < 1.0
+    assert done.promised(alone).gain < 1.0
     moved = alone.point.hypothesis.with_number("shaft_stiffness", 6060.0)
     away = done.at(moved, alone)
-    assert done.promised(away) == pytest.approx(alone.log_likelihood - away.log_likelihood, rel=0.2)
+    assert done.promised(away).gain == pytest.approx(alone.log_likelihood - away.log_likelihood, rel=0.2)
 
 
 def test_what_runs_away_promises_nothing() -> None:
