@@ -59,7 +59,8 @@ def _apart(found: Diagnosis, one: Alternative) -> Iterator[tuple[str, str]]:
     label = EFFECTS[one.use.id].label(one.use.values)
     for effect in found.effects or (None,):
         alike = effect is not None and label in effect.alike
-        if not (alike or (one.plan and effect in (None, *found.effects[:1]))):
+        stands_for = effect is None or EFFECTS[effect.use.id].label(effect.use.values) == one.instead_of
+        if not (alike or (one.plan and stands_for)):
             continue
         how = (
             one.separating_test

@@ -63,7 +63,9 @@ def found() -> Diagnosis:
         effects=(NamedEffect(use, {"half_gap_rad": 2e-4}, 0.97, place),),
         parameter_updates={"vehicle_inertia": (303.0, 301.7, 0.4)},
         alternatives=(
-            Alternative(SKEW, 0.03, "A chirp up to 30 Hz.", "separate_channel_skew.yaml", "name: x"),
+            Alternative(
+                SKEW, 0.03, "A chirp up to 30 Hz.", "separate_channel_skew.yaml", "name: x", "backlash"
+            ),
         ),
         gap_before=before,
         gap_after=after,
@@ -246,6 +248,16 @@ def test_the_report_says_what_to_do_next(
 def test_a_name_is_never_quite_certain(found: Diagnosis) -> None:
     sure = dataclasses.replace(found.effects[0], confidence=0.9999)
     assert "(>99%)" in effects_in_words(dataclasses.replace(found, effects=(sure,)))
+
+
+def test_a_rival_is_told_from_the_name_that_it_would_take_the_place_of(found: Diagnosis) -> None:
+    friction = dataclasses.replace(found.effects[0], use=EffectUse("coulomb_friction", {"torque_nm": 1.0}))
+    rival = dataclasses.replace(found.alternatives[0], instead_of="coulomb_friction")
+    two = dataclasses.replace(found, effects=(*found.effects, friction), alternatives=(rival,))
+    page: Any = html.fromstring(diagnosis_html(two, "axle.toml"))
+    words = " ".join(page.text_content().split())
+    assert "Tell coulomb friction from" in words
+    assert "Tell backlash from" not in words
 
 
 def test_names_that_the_data_cannot_tell_apart_stand_together_and_share_the_confidence(

@@ -268,7 +268,6 @@ def _alternatives(found: Outcome, shown: _Shown, small: Collection[str]) -> tupl
     Args:
         small: names of the class of a correction, which are too small as well.
     """
-    first = found.effects[0].id if found.effects else "numbers"
     shared = {name: one.confidence for one in found.effects for name in one.alike}
     most = most_of(shown.traces, shown.after_samples)
     others = []
@@ -278,11 +277,22 @@ def _alternatives(found: Outcome, shown: _Shown, small: Collection[str]) -> tupl
         if label in small or (found.effects and not round(confidence, 2)):
             continue  # it would be shown as 0
         text, plan = one.separating_test or EFFECTS[one.id].shown_by, ""
+        instead_of = _place_of(found, one)
+        pair = instead_of.partition("(")[0] or "numbers", one.id
         if one.model is not None and worth_a_plan(confidence, most):
-            text, plan = separating_plan(found.model, one.model, found.noise, most, (first, one.id))
+            text, plan = separating_plan(found.model, one.model, found.noise, most, pair)
         name = plan_file(one.use) if plan else None
-        others.append(Alternative(one.use, confidence, text, name, plan or None))
+        others.append(Alternative(one.use, confidence, text, name, plan or None, instead_of))
     return tuple(others)
+
+
+def _place_of(found: Outcome, rival: Named) -> str:
+    """Label of the named effect that a rival would take the place of; '' where none is named."""
+    labels = {EFFECTS[one.id].label(one.use.values): one for one in found.effects}
+    mine = EFFECTS[rival.id].label(rival.use.values)
+    there = [EFFECTS[use.id].label(use.values) for use in rival.model.effects] if rival.model else []
+    alike = [label for label, one in labels.items() if mine in one.alike]
+    return next(iter([*alike, *(label for label in labels if label not in there), *labels]), "")
 
 
 def _steadied(found: Outcome) -> list[str]:

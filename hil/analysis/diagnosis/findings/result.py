@@ -57,13 +57,17 @@ def as_corrections(small: Sequence[NamedEffect]) -> dict[str, tuple[float, float
 
 @dataclass(frozen=True)
 class Alternative:
-    """Another name for the same gap, and the test that would tell the two apart."""
+    """Another name for the same gap, and the test that would tell the two apart.
+
+    `instead_of` is the label of the named effect that it would take the place of; '' where none is named.
+    """
 
     use: EffectUse
     confidence: float
     separating_test: str
     plan: str | None = None
     plan_text: str | None = None
+    instead_of: str = ""
 
 
 @dataclass(frozen=True)

@@ -129,17 +129,14 @@ def test_every_test_runs_on_the_simulated_bench_as_it_was_simulated(name: str, t
 @pytest.mark.hunt
 def test_what_one_way_turning_leaves_open_the_plan_decides(tmp_path: Path) -> None:
     """Friction and running resistance on an axle that only turns forward, without a shaft torque sensor."""
-    (recording,) = recordings(Truth({"rolling": 20.0}), 2, short=True, only=("chirp_biased",))
+    (recording,) = recordings(Truth({"rolling": 20.0}), 2, off=0.0, short=True, only=("chirp_biased",))
     del recording.channels["shaft_torque_nm"]
     write_recording(recording, tmp_path / "biased.csv")
     save_model(MODEL, tmp_path / "model.toml")
     hil("diagnose", "--model", "model.toml", "biased.csv", "--out", "why", cwd=tmp_path)
     first = json.loads((tmp_path / "why/diagnosis.json").read_text())
-    likely = {e["id"]: e for e in first["effects"]} | {
-        a["id"]: a for a in first["alternatives"] if "plan" in a
-    }
-    assert {"coulomb_friction", "running_resistance"} <= set(likely)
-    assert max(e["confidence"] for e in first["effects"]) < 0.9
+    (named,) = first["effects"]
+    assert {"coulomb_friction", "running_resistance"} <= {*named["class"].split(" or ")}
     plan = next(a["plan"] for a in first["alternatives"] if "plan" in a)
 
     save_model(MODEL.with_effects(ROLLING), tmp_path / "axle.toml")
