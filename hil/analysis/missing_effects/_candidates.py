@@ -73,6 +73,8 @@ class Candidates:
 
     def may_gain(self, candidate: Candidate) -> bool:
         """Whether one more name could pay, if it left nothing but noise."""
+        if self.problem.is_right(candidate.point.errors):
+            return False
         least = math.log(candidate.known) + self.least(candidate)
         return self.problem.most_to_gain(candidate.point.errors) > least
 
@@ -82,12 +84,13 @@ class Candidates:
         return [one.name for one in coordinates if math.log1p(one.away(0.0) ** 2) > ALIKE and one.term < 0]
 
     def go_on_from(self, best: Candidate) -> Candidate:
-        """Weigh errors by what the best hypothesis leaves; it, with ripples as angles have them now."""
+        """Weigh errors by what the best hypothesis leaves; it, with what follows angles as these are now."""
         powers = best.point.powers(self.problem)
         self.values = powers.values(self.problem.noise)
         turned, hypothesis = tracked(self.problem, best.point)
         self.problem = turned.weighed_by(powers.spectrum(self.problem.noise))
-        return best if hypothesis is best.point.hypothesis else self.at(hypothesis, best)
+        follows = any(EFFECTS[use.id].law.follows for use in hypothesis.model().effects)
+        return self.at(hypothesis, best) if follows else best
 
     def weighed_as(self, candidate: Candidate, *, once: bool = False) -> Problem:
         """The problem, errors weighed by the spectrum that a candidate leaves itself.

@@ -12,6 +12,7 @@ from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
+from scipy.fft import dct, idct
 
 from hil.analysis.missing_effects._fit import Point
 from hil.analysis.missing_effects._problem import Problem
@@ -120,12 +121,12 @@ def turned_with(problem: Problem, point: Point) -> Problem:
     angles = []
     for index, one in enumerate(problem.series):
         shown = problem.samples(index, point.hypothesis, point.starts[index])
-        apart = np.fft.rfft(one.samples - shown, axis=0)
+        apart = dct(one.samples - shown, axis=0)  # no leap where a drift ends elsewhere than it began
         powers = powers_of([point.errors[index]], problem.rate_hz, problem.signal)
         power = np.mean(powers.power, axis=0)
         share = np.maximum(1.0 - noise / np.maximum(power, 1e-300), 0.0)
-        band = bands_of(powers.edges_hz, np.fft.rfftfreq(len(shown), one.dt).astype(np.float64))
-        speeds = shown + np.fft.irfft(share.T[band] * apart, len(shown), axis=0)
+        band = bands_of(powers.edges_hz, np.arange(len(shown), dtype=np.float64) / (2 * len(shown) * one.dt))
+        speeds = shown + idct(share.T[band] * apart, axis=0)
         angles.append(turned(speeds, one.dt, ratio, one.first_wheel_angle_rad))
     return replace(problem, angles=tuple(angles))
 

@@ -13,7 +13,7 @@ from hil.analysis.missing_effects._hypothesis import Coordinate, Hypothesis
 from hil.analysis.missing_effects._noise import colour_of, with_motion
 from hil.analysis.missing_effects._series import Series, block_means
 from hil.analysis.missing_effects._simulations import UNBOUNDED, Allowance, Shown
-from hil.analysis.missing_effects._spectrum import Powers, Spectrum, of_noise, powers_of
+from hil.analysis.missing_effects._spectrum import RIGHT_TO, Powers, Spectrum, of_noise, powers_of
 from hil.core.model import Model, TransferFunction
 from hil.core.runtime.thread_map import map_on_threads
 from hil.plant import SENSOR_TURNED, begins_of, gear_ratio_of, is_regulated, pack, simulate_many, turns
@@ -90,17 +90,19 @@ class Problem:
     def noise_in(self, errors: Sequence[Array]) -> tuple[Array, Array]:
         """Mean square that is noise beyond doubt, (3,), and the most that may be noise.
 
-        What quiet windows show as well; where all windows are alike white noise, and what is usual.
+        What quiet windows show as well; where all windows are alike white noise, and what is usual. No less
+        than what no model is right to.
         """
         return self._noise_in(self.powers(errors))
 
     def _noise_in(self, powers: Powers) -> tuple[Array, Array]:
-        most = self.slow_noise * self.noise**2
+        most, right = self.slow_noise * self.noise**2, self.noise**2 + RIGHT_TO**2 * self.signal
         if not self.tells_noise:
-            return self.noise**2, most
+            return self.noise**2, np.maximum(most, right)
         level, upper = (powers.mean_square(one) for one in powers.quiet(self.noise))
         upper = np.minimum(upper, most)
-        return np.maximum(2.0 * np.minimum(level, most) - upper, self.noise**2), upper
+        level = np.maximum(2.0 * np.minimum(level, most) - upper, self.noise**2)
+        return level, np.maximum(upper, right)
 
     def slowest_noise(self, errors: Sequence[Array]) -> Array:
         """Power of noise in the lowest octave, (3,), which an integral of a speed sees."""
@@ -120,6 +122,12 @@ class Problem:
         square = powers.mean_square()
         there = np.isfinite(square)
         return bool(np.all(square[there] <= self._noise_in(powers)[1][there]))
+
+    def is_right(self, errors: Sequence[Array]) -> bool:
+        """Whether errors beyond noise are no more than what no model is right to: nothing is to be named."""
+        beyond = self.mean_square(errors) - self.noise**2
+        there = np.isfinite(beyond)
+        return bool(np.all(beyond[there] <= RIGHT_TO**2 * self.signal[there]))
 
     def powers(self, errors: Sequence[Array], *, once: bool = False) -> Powers:
         """Of errors of each recording, where they count.

@@ -55,8 +55,7 @@ def search(done: Candidates, show: Callable[[str], None]) -> None:
     started = with_better_starts(problem, point_at(problem, start))
     done.problem = problem.weighed_by(started.powers(problem).spectrum(problem.noise))
     best = done.fitted(start, None)
-    best = done.fitted(best.point.hypothesis, best)
-    done.go_on_from(best)
+    best = _with_better_angles(done, done.fitted(best.point.hypothesis, best))
     weak = False
     while len(best.names) < _MOST_NAMES and (
         done.may_gain(best) or (not best.names and done.has_moved(best))
