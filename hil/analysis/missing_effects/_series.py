@@ -239,6 +239,11 @@ def _notes(recording: Recording, uneven: str, dt: float) -> list[str]:
         for channel in OUTPUTS
         if channel not in there and (near := closest(channel, strange))
     ]
+    if dt > 1.0 / FIT_RATE_HZ:
+        notes.append(
+            f"sampled at {1.0 / dt:.4g} Hz: what the torque did between samples is not known, and looks like "
+            f"up to {0.5e3 * dt:.3g} ms of dead time"
+        )
     if uneven:
         notes.append(f"{uneven}: put on a grid of {dt * 1e3:.4g} ms")
     notes += [
