@@ -96,13 +96,13 @@ class Problem:
         return self._noise_in(self.powers(errors))
 
     def _noise_in(self, powers: Powers) -> tuple[Array, Array]:
-        most, right = self.slow_noise * self.noise**2, self.noise**2 + RIGHT_TO**2 * self.signal
+        most = self.slow_noise * self.noise**2
         if not self.tells_noise:
-            return self.noise**2, np.maximum(most, right)
+            return self.noise**2, np.maximum(most, self._right)
         level, upper = (powers.mean_square(one) for one in powers.quiet(self.noise))
         upper = np.minimum(upper, most)
         level = np.maximum(2.0 * np.minimum(level, most) - upper, self.noise**2)
-        return level, np.maximum(upper, right)
+        return level, np.maximum(upper, self._right)
 
     def slowest_noise(self, errors: Sequence[Array]) -> Array:
         """Power of noise in the lowest octave, (3,), which an integral of a speed sees."""
@@ -125,9 +125,14 @@ class Problem:
 
     def is_right(self, errors: Sequence[Array]) -> bool:
         """Whether errors beyond noise are no more than what no model is right to: nothing is to be named."""
-        beyond = self.mean_square(errors) - self.noise**2
-        there = np.isfinite(beyond)
-        return bool(np.all(beyond[there] <= RIGHT_TO**2 * self.signal[there]))
+        square = self.mean_square(errors)
+        there = np.isfinite(square)
+        return bool(np.all(square[there] <= self._right[there]))
+
+    @property
+    def _right(self) -> Array:
+        """Mean square of errors of a model that is as right as one can be, (3,)."""
+        return self.noise**2 + RIGHT_TO**2 * self.signal
 
     def powers(self, errors: Sequence[Array], *, once: bool = False) -> Powers:
         """Of errors of each recording, where they count.

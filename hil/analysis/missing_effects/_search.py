@@ -254,7 +254,7 @@ def _suggested(done: Candidates, best: Candidate) -> list[tuple[Hypothesis, floa
     """Hypotheses with one more effect, each with the growth of log L that it promises.
 
     Those that the latent torque names (which promises no number, so they are all tried, but where noise is
-    left), and those that promise more than they cost, best first.
+    left), and those that promise more than they cost.
     """
     is_noise = done.problem.is_noise(best.point.errors)
     read = [] if is_noise else readings(best.point.hypothesis, done.problem.series)
@@ -267,8 +267,9 @@ def _suggested(done: Candidates, best: Candidate) -> list[tuple[Hypothesis, floa
     ]
     least = done.least(best)
     beside = _beside_the_base(done, best, least)
-    if any(gain > HALF * done.problem.most_to_gain(best.point.errors) for _, gain in beside):
-        return sorted([*found, *beside], key=lambda one: -one[1])  # others promise less from where that is
+    gained = max((gain for _, gain in beside), default=0.0)
+    if beside and gained > HALF * done.problem.most_to_gain(best.point.errors):
+        return [*found, *beside]  # others promise less from where that is
     promised = promises(done.problem, linearised(done.problem, best.point))
     for sizes in best_by_name([one for one in promised if one.gain > least], _RIVALS):
         abrupt = EFFECTS[sizes[0].use.id].abrupt
@@ -278,7 +279,7 @@ def _suggested(done: Candidates, best: Candidate) -> list[tuple[Hypothesis, floa
         elsewhere = _as_elsewhere(done, best, sizes[0].label)
         if elsewhere:
             found.append((_likelier(done, best, *elsewhere), sizes[0].gain))
-    return sorted([*found, *beside], key=lambda one: -one[1])
+    return [*found, *beside]
 
 
 def _as_elsewhere(done: Candidates, best: Candidate, label: str) -> list[Hypothesis]:

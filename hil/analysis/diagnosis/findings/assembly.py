@@ -277,7 +277,7 @@ def _alternatives(found: Outcome, shown: _Shown, small: Collection[str]) -> tupl
         if label in small or (found.effects and not round(confidence, 2)):
             continue  # it would be shown as 0
         text, plan = one.separating_test or EFFECTS[one.id].shown_by, ""
-        instead_of = _place_of(found, one)
+        instead_of = _place_of(found, one, label)
         pair = instead_of.partition("(")[0] or "numbers", one.id
         if one.model is not None and worth_a_plan(confidence, most):
             text, plan = separating_plan(found.model, one.model, found.noise, most, pair)
@@ -286,13 +286,12 @@ def _alternatives(found: Outcome, shown: _Shown, small: Collection[str]) -> tupl
     return tuple(others)
 
 
-def _place_of(found: Outcome, rival: Named) -> str:
-    """Label of the named effect that a rival would take the place of; '' where none is named."""
+def _place_of(found: Outcome, rival: Named, label: str) -> str:
+    """Label of the named effect that a rival of a label would replace; '' where none is named."""
     labels = {EFFECTS[one.id].label(one.use.values): one for one in found.effects}
-    mine = EFFECTS[rival.id].label(rival.use.values)
     there = [EFFECTS[use.id].label(use.values) for use in rival.model.effects] if rival.model else []
-    alike = [label for label, one in labels.items() if mine in one.alike]
-    return next(iter([*alike, *(label for label in labels if label not in there), *labels]), "")
+    alike = [name for name, one in labels.items() if label in one.alike]
+    return next(iter([*alike, *(name for name in labels if name not in there), *labels]), "")
 
 
 def _steadied(found: Outcome) -> list[str]:

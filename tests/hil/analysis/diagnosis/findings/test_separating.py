@@ -135,6 +135,10 @@ def test_what_one_way_turning_leaves_open_the_plan_decides(tmp_path: Path) -> No
     save_model(MODEL, tmp_path / "model.toml")
     hil("diagnose", "--model", "model.toml", "biased.csv", "--out", "why", cwd=tmp_path)
     first = json.loads((tmp_path / "why/diagnosis.json").read_text())
+    likely = {e["id"]: e for e in first["effects"]} | {
+        a["id"]: a for a in first["alternatives"] if "plan" in a
+    }
+    assert {"coulomb_friction", "running_resistance"} <= set(likely)
     (named,) = first["effects"]
     assert {"coulomb_friction", "running_resistance"} <= {*named["class"].split(" or ")}
     plan = next(a["plan"] for a in first["alternatives"] if "plan" in a)
