@@ -11,7 +11,7 @@ from hil.plant._angles import (
     speed_of,
     turned,
 )
-from hil.plant._batch_simulation import ideal_sensors, simulate_many
+from hil.plant._batch_simulation import Led, ideal_sensors, simulate_many
 from hil.plant._linear import LinearSystem, linear_system, linear_system_of, system
 from hil.plant._packed_sets import begins_of, turns
 from hil.plant._regulated import Turning, followed, given_outputs, stands, turning_of
@@ -35,6 +35,7 @@ __all__ = [
     "SENSOR_STEP",
     "SENSOR_TURNED",
     "TURNED_OVER_S",
+    "Led",
     "LinearSystem",
     "Start",
     "Turning",

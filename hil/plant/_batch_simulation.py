@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 
@@ -46,6 +47,20 @@ CHANNELS = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
 _PARTS_PER_THREAD = 4
 
 
+@dataclass(frozen=True)
+class Led:
+    """Speeds of rotor and wheel (n x 2, rad/s; NaN where not recorded) that lead a simulation.
+
+    At every sample `share` of what is between them and the simulated ones is made up for.
+    """
+
+    speeds: Array
+    share: float
+
+
+_NOT_LED = (np.zeros((1, 2)), 0.0)
+
+
 def ideal_sensors(sets: int) -> Array:
     """Sensors that read the truth, for each of the three channels: sets x 3 x a sensor's numbers."""
     sensors = np.zeros((sets, len(CHANNELS), COLUMNS))
@@ -64,6 +79,7 @@ def simulate_many(
     load_nm: Array | None = None,
     functions: Mapping[str, TransferFunction] | None = None,
     before_nm: float | None = None,
+    led: Led | None = None,
 ) -> Array:
     """Channels of many packed models for one torque request, each the mean of `block` samples.
 
@@ -81,6 +97,7 @@ def simulate_many(
         functions: of a transfer-function model; only torque path and sensors of `parameters` count then, and
             there was no torque before.
         before_nm: has acted since long before; the first value of `torque_nm` when left out.
+        led: speeds that lead all models; none when left out.
 
     Returns:
         sets x (n // block) x 3, in the order of `CHANNELS`. A diverged set shows as NaN or huge numbers.
@@ -105,6 +122,7 @@ def simulate_many(
     parameters, sensors = np.ascontiguousarray(parameters), np.ascontiguousarray(sensors, dtype=float)
     angles = np.zeros((0, 2)) if angles is None else np.ascontiguousarray(angles, dtype=float)
     load_nm = None if load_nm is None else np.ascontiguousarray(load_nm, dtype=float)
+    lead = _NOT_LED if led is None else (np.ascontiguousarray(led.speeds, dtype=float), led.share)
 
     def run(part: slice) -> None:
         _run_all(
@@ -117,7 +135,7 @@ def simulate_many(
             substeps[part],
             varies[part],
             (transition[part], torque[part], held[part], rising[part]),
-            angles,
+            (angles, lead),
             load_nm,
             out[part],
         )
@@ -207,11 +225,25 @@ def _braked(y, begins, rises, held, rising, has_wheel):  # type: ignore[no-untyp
     return y
 
 
+@inlined
+def _led(x, lead, k, ends):  # type: ignore[no-untyped-def]
+    """State at sample `k`, where one `ends`, nearer to the speeds that lead it."""
+    speeds, share = lead
+    share = share if ends and k < speeds.shape[0] else 0.0
+    k = min(k, speeds.shape[0] - 1)
+    motor, wheel = speeds[k, 0] - relative_speed(x), speeds[k, 1] - x[X.WHEEL_SPEED]
+    motor = share * motor if math.isfinite(motor) else 0.0
+    wheel = share * wheel if math.isfinite(wheel) else 0.0
+    x = put(put(x, X.ROTOR_SPEED, x[X.ROTOR_SPEED] + motor), X.WHEEL_SPEED, x[X.WHEEL_SPEED] + wheel)
+    return put(x, X.VEHICLE_SPEED, x[X.VEHICLE_SPEED] + wheel)
+
+
 @compiled
-def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, load, fine):  # type: ignore[no-untyped-def]
+def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, recorded, load, fine):  # type: ignore[no-untyped-def]
     # What is none is added all the same, as zero: a state that goes two ways falls apart into scalars.
     asked, shown, torque = drive
     transition, column, held, rising = matrices
+    angles, lead = recorded
     x, memories = first
     chain, acting = chain_of(p), acting_of(p)
     turns, leaps, limits = L.turns(p), L.leaps(p), L.limits(p)
@@ -250,8 +282,9 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, l
                 level = F.level(before, chain, memories, p)
                 friction = mean_friction(before, relative_speed(y), gain, level)
             y = plus_row(y, friction, held, F.LOSS)
+            ends = sub == substeps - 1
             if varies == CONSTANT:
-                x = y
+                x = _led(y, lead, k + 1, ends)
                 continue
             part = (sub + 1.0) / substeps
             later = F.angles_at(angles, k, part, x, y, at, h, p) if turns else at
@@ -261,8 +294,8 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, l
                 kept = L.remembered(m, n, chain, memories, p, h)
                 n = motion_of(y, chain, kept, later[F.WHEEL], later[F.ROTOR], p)
             middle = 0.5 * (before + relative_speed(y))
-            ends = F.forces(n, chain, kept, p, acting)
-            changed = F.change(ends, f)
+            then = F.forces(n, chain, kept, p, acting)
+            changed = F.change(then, f)
             more, rise = 0.0, 0.0
             if leaps and kept != memories:  # what stays where it was does not leap
                 more, rise = L.shaft_leap(m, n, chain, memories, p, h)
@@ -275,8 +308,9 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, l
                 level = F.level(middle, chain, memories, p)
                 again = mean_friction(before, relative_speed(y) + gain * friction, gain, level)
             y = plus_row(y, again - friction, held, F.LOSS)
+            y = _led(y, lead, k + 1, ends)
             if known:
-                at, f = later, ends
+                at, f = later, then
             else:
                 if turns:
                     at = F.angles_at(angles, k, part, x, y, at, h, p)
@@ -315,9 +349,10 @@ def _run_by_angle(drive, whole, p, first, h, substeps, matrices, angles, fine): 
 
 
 @compiled
-def _run(torque, dt, vector, start, substeps, varies, matrices, angles, load, fine):  # type: ignore[no-untyped-def]
+def _run(torque, dt, vector, start, substeps, varies, matrices, recorded, load, fine):  # type: ignore[no-untyped-def]
     """One model over a recording into `fine` (n x 3); `torque` (n + 1) begins with what acted before."""
     p = as_tuple(vector)
+    angles, lead = recorded
     acting, ends, shown = np.empty(torque.shape[0]), np.empty(torque.shape[0]), np.empty(fine.shape[0])
     over_samples(torque, dt, p, acting, ends)
     first = _first_state(p, start, L.limited(acting[0], start[SPEED], p))
@@ -327,11 +362,12 @@ def _run(torque, dt, vector, start, substeps, varies, matrices, angles, load, fi
     limits = L.limits(p)
     h = dt / substeps
     known = varies == BY_ANGLE and angles.shape[0] > 0 and load is None
+    is_led = lead[1] > 0.0
     does = acting_of(p)
-    if known and not (does.dry or does.load or does.tyre or does.memory or limits):
+    if known and not (does.dry or does.load or does.tyre or does.memory or limits or is_led):
         _run_by_angle(drive, whole, p, first, h, substeps, matrices, angles, fine)
-    elif varies != CONSTANT or L.pushes(p) or limits or load is not None:
-        _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, load, fine)
+    elif varies != CONSTANT or L.pushes(p) or limits or load is not None or is_led:
+        _run_forced(drive, whole, p, first, varies, h, substeps, matrices, recorded, load, fine)
     else:
         _run_linear(drive, whole, p, first[0], substeps, matrices[1], matrices[0], fine)
 
@@ -346,7 +382,7 @@ def _alike(rows, s):  # type: ignore[no-untyped-def]
 
 
 @compiled_without_lock
-def _run_all(torque, dt, parameters, starts, sensors, block, substeps, varies, matrices, angles, load, out):  # type: ignore[no-untyped-def]
+def _run_all(torque, dt, parameters, starts, sensors, block, substeps, varies, matrices, recorded, load, out):  # type: ignore[no-untyped-def]
     transition, column, held, rising = matrices
     fine = np.empty((torque.shape[0] - 1, 3))
     for s in range(parameters.shape[0]):
@@ -360,7 +396,7 @@ def _run_all(torque, dt, parameters, starts, sensors, block, substeps, varies, m
                 substeps[s],
                 varies[s],
                 (transition[s], column[s], held[s], rising[s]),
-                angles,
+                recorded,
                 load,
                 fine,
             )

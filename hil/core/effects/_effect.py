@@ -67,7 +67,7 @@ class Parameter:
             shares of the largest one that was asked for.
         rough: errors are rough in it, since contact comes and goes.
         choices: values between which a diagnosis chooses, for a number that no fit moves.
-        beside: the optional number that it is opened together with: without it, it means little or nothing.
+        beside: optional numbers of which one must be there: without, it means little or nothing.
     """
 
     name: str
@@ -84,7 +84,7 @@ class Parameter:
     opens: tuple[float, ...] = ()
     rough: bool = False
     choices: tuple[float, ...] = ()
-    beside: str = ""
+    beside: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -15,15 +15,14 @@ damping and a restitution, the two dampings add.
 A damping that strikes from nothing is an idealisation. With `contact_depth_rad` that of the flanks counts
 from where they meet with shafts untwisted, however wound these still are, and sets in over that depth beyond
 it, in a cubic step (as in the IMPACT function of MSC Adams); with 0 it acts as soon and as long as flanks
-touch. With `one_spring` 1 that of the shafts sets in alike, and free they are untwisted at once: dissipation
-begins with the force.
+touch. With `one_spring` 1 that of the shafts sets in alike, and free they are untwisted at once: a dead zone
+of the twist, which never pulls. With `film` 1 their damping acts in the gap as well: a dead zone of the
+spring alone.
 
 Other authors' flanks stand beside it. With `tension` 1 they bear all the pull of the dampings, as an oil film
 does until they part, and shafts that are free are untwisted at once: contact is where the twist is beyond the
 gap, k·δ + (c + d)·δ' (Kelvin and Voigt). `depth_damping_nms_rad2` λ adds λ·δ·δ' to the spring, which alone
-never pulls (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42, 1975). Between 0 and 1 tension mixes both. A
-diagnosis tries these and one spring last: where it did so before the width was found, a gap of the usual kind
-came out 14 % small.
+never pulls (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42, 1975). Between 0 and 1 tension mixes both.
 """
 
 from __future__ import annotations
@@ -41,9 +40,8 @@ _HALVINGS = 60
 _CRITICAL = 1e-6
 _LEAST_RESTITUTION = 0.1
 _STEP_S = 1e-3  # of fits: an axle's shafts swing in 30 and more
-_SIZES = 12  # of gaps that a diagnosis tries first, every other one with flanks that damp as well
-_DAMPINGS_NMS_RAD = (10.0, 50.0)
-_DEPTH_RAD = 5e-4
+_SIZES = 12  # of gaps that a diagnosis tries first, by each of these laws
+_LAWS: tuple[dict[str, float], ...] = ({}, {"one_spring": 1.0}, {"film": 1.0})
 
 
 def parting_share(ratio: float) -> float:
@@ -74,23 +72,23 @@ def _prepare(chain: Chain, values: Values) -> Values:
     In place of the restitution stands the least share of a damping that flanks have as they touch, of the
     depth its inverse in 1/rad, of one spring the shafts' own damping that is not whole at once, in N m s/rad.
     """
-    half_gap, contact_damping, restitution, depth_damping, tension, depth, one_spring = values
+    half_gap, contact_damping, restitution, depth_damping, tension, depth, one_spring, film = values
     if restitution < 1.0:
         contact_damping += damping_of(restitution, chain)
-    at_once, inverse, later = (
-        (0.0, 1.0 / depth, one_spring * chain.shaft_damping) if depth > 0.0 else (1.0, 0.0, 0.0)
-    )
-    return half_gap, contact_damping, at_once, depth_damping, tension, inverse, later
+    at_once, inverse = (0.0, 1.0 / depth) if depth > 0.0 else (1.0, 0.0)
+    film *= chain.shaft_damping
+    later = one_spring * (chain.shaft_damping - film)
+    return half_gap, contact_damping, at_once, depth_damping, tension, inverse, later, film
 
 
 def _shaft(motion: Motion, chain: Chain, seat: float, values: Values) -> float:
     """What contact and gap take from or add to the torque of shafts without play."""
     linear = chain.shaft_stiffness * motion.twist + chain.shaft_damping * motion.twist_rate
-    return _contact(motion, chain, seat, values) - linear
+    return _contact(motion, chain, seat, values) + values[7] * motion.twist_rate - linear
 
 
 def _contact(motion: Motion, chain: Chain, seat: float, values: Values) -> float:
-    """Torque of the shafts in N m, with free play."""
+    """Torque of the shafts in N m, with free play, but for what goes through a film in it."""
     if -values[0] < seat < values[0]:
         return 0.0
     return _torque(motion.twist, motion.twist_rate, chain, seat, values)
@@ -114,7 +112,7 @@ def _damping(twist: float, chain: Chain, seat: float, values: Values) -> float:
     pressed = math.copysign(1.0, seat) * twist - values[0]
     share = min(max(pressed * values[5], values[2]), 1.0)
     not_yet = 1.0 - share * share * (3.0 - 2.0 * share)
-    return chain.shaft_damping + values[1] - not_yet * (values[1] + values[6])
+    return chain.shaft_damping - values[7] + values[1] - not_yet * (values[1] + values[6])
 
 
 def _leap(
@@ -184,7 +182,7 @@ def _between(begins: float, ends: float, share: float) -> float:
 
 def _kept(chain: Chain, values: Values, h: float) -> float:
     """Share of a twist that shafts within the gap still have after `h` seconds."""
-    relaxing = (1.0 - values[4]) * (chain.shaft_damping - values[6])
+    relaxing = (1.0 - values[4]) * (chain.shaft_damping - values[7] - values[6])
     return math.exp(-h * chain.shaft_stiffness / relaxing) if relaxing > 0.0 else 0.0
 
 
@@ -219,13 +217,9 @@ def _steps(chain: Chain, values: Values, dt: float) -> int:
 def _probes(scene: Scene) -> Iterator[Probe]:
     for step in range(_SIZES):
         gap = 2e-4 * 600.0 ** (step / (_SIZES - 1))
-        bouncing = sized("half_gap_rad", gap, 0.2, restitution=1.0, tension=0.0)
-        yield bouncing.at(step, first=step % 2 == 0)
-        for damping in _DAMPINGS_NMS_RAD if step % 2 == 0 else ():
-            damped = sized(
-                "half_gap_rad", gap, 0.2, contact_damping_nms_rad=damping, contact_depth_rad=_DEPTH_RAD
-            )
-            yield damped.at(step, first=damping == _DAMPINGS_NMS_RAD[0])
+        for law in _LAWS:
+            probe = sized("half_gap_rad", gap, 0.2, restitution=1.0, tension=0.0, **law)
+            yield probe.at(step, first=step % 2 == 0)
 
 
 def _derived(values: Mapping[str, float]) -> dict[str, float]:
@@ -251,7 +245,7 @@ EFFECT = Effect(
             "of the flanks while they touch, wheel side",
             optional=True,
             typical=10.0,
-            opens=_DAMPINGS_NMS_RAD,
+            opens=(10.0, 50.0),
         ),
         Parameter(
             "restitution",
@@ -280,6 +274,7 @@ EFFECT = Effect(
             "share of the dampings' pull that flanks bear until they part: 0 none, 1 all (Kelvin, Voigt)",
             optional=True,
             fitted=False,
+            choices=(0.0, 1.0),
         ),
         Parameter(
             "contact_depth_rad",
@@ -291,7 +286,7 @@ EFFECT = Effect(
             typical=1e-3,
             within=(1e-5, 0.1),
             opens=(5e-4, 2e-3),
-            beside="contact_damping_nms_rad",
+            beside=("contact_damping_nms_rad", "one_spring"),
         ),
         Parameter(
             "one_spring",
@@ -301,6 +296,17 @@ EFFECT = Effect(
             "share of the shafts' own damping that sets in alike; free, they are untwisted at once",
             optional=True,
             fitted=False,
+            choices=(0.0, 1.0),
+        ),
+        Parameter(
+            "film",
+            "1",
+            0.0,
+            1.0,
+            "share of the shafts' own damping that acts through the gap as well, as that of oil does",
+            optional=True,
+            fitted=False,
+            choices=(0.0, 1.0),
         ),
     ),
     needs=("two_inertia", "three_inertia"),

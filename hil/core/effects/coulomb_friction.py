@@ -161,7 +161,7 @@ EFFECT = Effect(
             default=2.0,
             within=(0.2, 100.0),
             opens=(1.0, 4.0, 15.0),
-            beside="stribeck_torque_nm",
+            beside=("stribeck_torque_nm",),
         ),
         Parameter(
             "stribeck_power",
@@ -173,7 +173,7 @@ EFFECT = Effect(
             default=2.0,
             fitted=False,
             choices=(1.0, 2.0),
-            beside="stribeck_torque_nm",
+            beside=("stribeck_torque_nm",),
         ),
         Parameter(
             "bristle_damping_nms_rad",
@@ -184,7 +184,7 @@ EFFECT = Effect(
             optional=True,
             typical=0.05,
             opens=(0.05, 0.3),
-            beside="turn_rad",
+            beside=("turn_rad",),
         ),
     ),
     least=Least(1e-4, "largest torque"),

@@ -23,6 +23,7 @@ from hil.core.effects._probe import Probe, Scene, clipped
 
 _STANDS_RAD_S = 1e-3  # below, no power limits a torque
 _ANY_NM = 1e6  # a peak torque that is not known limits nothing
+_ANY_W = 1e9  # nor does such a power
 
 
 def _prepare(chain: Chain, values: Values) -> Values:
@@ -65,7 +66,7 @@ EFFECT = Effect(
     signature="Torque falls short of the request at high speed, or of regeneration with a full battery.",
     shown_by="A large torque step at several speeds.",
     parameters=(
-        Parameter("power_w", "W", 1e-3, 1e9, "largest mechanical power of driving"),
+        Parameter("power_w", "W", 1e-3, _ANY_W, "largest mechanical power of driving"),
         Parameter(
             "peak_nm",
             "N m",
@@ -76,7 +77,16 @@ EFFECT = Effect(
             default=_ANY_NM,
             opens=(0.97, 0.85, 0.7, 0.55, 0.4, 0.25),
         ),
-        Parameter("regenerated_w", "W", 0.0, 1e9, "of regeneration; 0: as of driving", optional=True),
+        Parameter(
+            "regenerated_w",
+            "W",
+            0.0,
+            _ANY_W,
+            "of regeneration; 0: as of driving",
+            optional=True,
+            fitted=False,
+            choices=(0.0, _ANY_W),
+        ),
         Parameter("state_of_charge", "1", 0.0, 1.0, "of the battery", optional=True, default=0.5),
         Parameter("low_charge", "1", 0.0, 1.0, "below which driving power falls", optional=True, default=0.1),
         Parameter(

@@ -19,7 +19,7 @@ def _probes(scene: Scene) -> Iterator[Probe]:
     twist = scene.shaft_torque_nm / stiffness
     unit = stiffness / twist**2
     yield scaled("coefficient_nm_rad3", 0.01 * unit, -20.0, 20.0)
-    for share in (-0.3, -0.15, 0.15, 0.4, 1.0):
+    for share in (-0.3, -0.15, 0.15, 0.4, 1.0, 4.0, 48.0):  # of a torque that is up to four fifths of its own
         yield sized("coefficient_nm_rad3", share * unit)
 
 

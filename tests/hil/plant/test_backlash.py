@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from hil.core.model import EffectUse, Model
 from hil.plant import Start, ideal_sensors, pack, simulate, simulate_many
@@ -125,3 +126,37 @@ def test_flanks_of_another_author_need_the_depth_over_which_their_damping_sets_i
     ]
     assert np.all(off[1] < 0.5 * off[0])
     assert np.all(off[1] < 0.02 * np.std(theirs, axis=0))
+
+
+@pytest.mark.parametrize("kernel", [one, many])
+@pytest.mark.parametrize("flanks", ["one_spring", "film"])
+def test_dead_zones_of_other_authors_are_those_of_a_library_for_differential_equations(kernel, flanks):
+    """With one spring the dead zone never pulls; with a film the damping acts in the gap as well."""
+    p, gap = PLAIN.parameters, 0.004
+    n, k, d = p["gear_ratio"], p["shaft_stiffness"], p["shaft_damping"]
+    request = chirp(4.0)
+    late = np.concatenate([np.full(8, request[0]), request])  # dead time of eight samples
+
+    def shaft(twist, rate):
+        beyond = twist - np.clip(twist, -gap, gap)
+        if flanks == "film":
+            return k * beyond + d * rate
+        return np.sign(beyond) * max(np.sign(beyond) * (k * beyond + d * rate), 0.0)
+
+    def slope(t, x):
+        twist, rotor, wheel = x
+        rate = rotor / n - wheel
+        torque = shaft(twist, rate)
+        return (
+            rate,
+            (late[int(t * 1e3 + 1e-6)] - torque / n) / p["motor_inertia"],
+            torque / p["vehicle_inertia"],
+        )
+
+    times, x, expected = np.arange(4000) * 1e-3, np.zeros(3), np.zeros((4000, 2))
+    for index, t in enumerate(times):
+        expected[index] = x[1:]
+        x = solve_ivp(slope, (t, t + 9.99e-4), x, rtol=1e-8, atol=1e-9, max_step=1e-4).y[:, -1]
+    model = PLAIN.with_effects(EffectUse("backlash", {"half_gap_rad": gap, flanks: 1.0}))
+    got = kernel(model, request, (0.0, 0.0, 0.0))[:, :2]
+    assert np.all(np.std(got - expected, axis=0) < 0.01 * np.std(expected, axis=0))

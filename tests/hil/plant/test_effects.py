@@ -89,6 +89,7 @@ def test_both_integrators_see_the_same_effect(id_, changes):
         {"tension": 0.5, "depth_damping_nms_rad2": 150.0},
         {"tension": 1.0, "depth_damping_nms_rad2": 150.0},
         {"one_spring": 1.0, "contact_depth_rad": 1e-3},
+        {"film": 1.0},
     ],
 )
 def test_both_integrators_see_the_same_blows(flanks):
@@ -106,7 +107,13 @@ def test_both_integrators_see_the_same_blows(flanks):
         (
             "backlash",
             {},
-            {"depth_damping_nms_rad2": 0.0, "tension": 0.0, "contact_depth_rad": 0.0, "one_spring": 0.0},
+            {
+                "depth_damping_nms_rad2": 0.0,
+                "tension": 0.0,
+                "contact_depth_rad": 0.0,
+                "one_spring": 0.0,
+                "film": 0.0,
+            },
         ),
         (
             "coulomb_friction",

@@ -35,7 +35,7 @@ small = st.floats(-0.1, 0.1)
 def test_flanks_in_contact_push_and_never_pull(twist, rate, seat, damping):
     motion = STILL._replace(twist=twist, twist_rate=rate)
     linear = CHAIN.shaft_stiffness * twist + CHAIN.shaft_damping * rate
-    torque = linear + BACKLASH.shaft(motion, CHAIN, seat, (0.02, damping, 1.0, 0.0, 0.0, 0.0, 0.0))
+    torque = linear + BACKLASH.shaft(motion, CHAIN, seat, (0.02, damping, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     assert torque * seat >= -1e-9
     free = CHAIN.shaft_stiffness * (twist - seat) + (CHAIN.shaft_damping + damping) * rate
     assert torque == pytest.approx(max(0.0, free) if seat > 0 else min(0.0, free), abs=1e-9)
@@ -46,9 +46,9 @@ def test_within_the_gap_nothing_is_carried(twist, rate, seat):
     motion = STILL._replace(twist=twist, twist_rate=rate)
     linear = CHAIN.shaft_stiffness * twist + CHAIN.shaft_damping * rate
     assert linear + BACKLASH.shaft(
-        motion, CHAIN, seat, (0.02, 10.0, 1.0, 0.0, 0.0, 0.0, 0.0)
+        motion, CHAIN, seat, (0.02, 10.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     ) == pytest.approx(0.0, abs=1e-9)
-    assert BACKLASH.stretch(twist, CHAIN, seat, (0.02, 10.0, 1.0, 0.0, 0.0, 0.0, 0.0)) == 0.0
+    assert BACKLASH.stretch(twist, CHAIN, seat, (0.02, 10.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0)) == 0.0
 
 
 @given(
@@ -60,7 +60,7 @@ def test_within_the_gap_nothing_is_carried(twist, rate, seat):
 )
 def test_nothing_leaps_where_the_seat_stays(twists, rates, seat, depth, tension):
     """Kernels do not ask for a leap then."""
-    values = BACKLASH.prepare(CHAIN, (0.02, 30.0, 1.0, 0.0, tension, depth, 0.0))
+    values = BACKLASH.prepare(CHAIN, (0.02, 30.0, 1.0, 0.0, tension, depth, 0.0, 0.0))
     before, after = (
         STILL._replace(twist=twist, twist_rate=rate) for twist, rate in zip(twists, rates, strict=True)
     )
@@ -90,10 +90,10 @@ def test_what_gives_back_next_to_nothing_acts_as_a_tenth():
 
 
 def test_an_elastic_blow_has_no_damping_of_its_own():
-    elastic = (0.02, 7.0, 1.0, 0.0, 0.0, 0.0, 0.0)
+    elastic = (0.02, 7.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     assert BACKLASH.prepare(CHAIN, elastic) == elastic
     two = CHAIN._replace(kind=TWO_INERTIA)
-    half = (0.02, 7.0, 0.5, 0.0, 0.0, 0.0, 0.0)
+    half = (0.02, 7.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0)
     assert BACKLASH.prepare(two, half)[1] > BACKLASH.prepare(CHAIN, half)[1] > 7.0
 
 
@@ -148,7 +148,7 @@ def test_damping_sets_in_over_the_depth_beyond_where_untwisted_shafts_meet(depth
 @given(twist=small)
 def test_one_spring_is_untwisted_at_once_when_it_is_free(twist):
     motion = STILL._replace(twist=twist)
-    values = BACKLASH.prepare(CHAIN, (0.02, 5.0, 1.0, 0.0, 0.0, 1e-3, 1.0))
+    values = BACKLASH.prepare(CHAIN, (0.02, 5.0, 1.0, 0.0, 0.0, 1e-3, 1.0, 0.0))
     seat = BACKLASH.remember(STILL, motion, CHAIN, 0.01, values, 1e-4)
     assert seat == min(max(twist, -0.02), 0.02)
 
@@ -156,7 +156,7 @@ def test_one_spring_is_untwisted_at_once_when_it_is_free(twist):
 @given(twist=small)
 def test_shafts_under_tension_are_in_contact_where_their_twist_is_beyond_the_gap(twist):
     motion = STILL._replace(twist=twist)
-    seat = BACKLASH.remember(STILL, motion, CHAIN, 0.01, (0.02, 5.0, 1.0, 0.0, 1.0, 0.0, 0.0), 1e-4)
+    seat = BACKLASH.remember(STILL, motion, CHAIN, 0.01, (0.02, 5.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0), 1e-4)
     assert seat == min(max(twist, -0.02), 0.02)
 
 
