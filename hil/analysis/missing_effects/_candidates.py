@@ -30,6 +30,8 @@ GROWING = 1.0
 MOST_ROUNDS = 4 * ROUNDS
 _TO_FIRST_ORDER = 2.0  # times what numbers promise may a fit bring
 _STRAIGHT = 0.5  # of a number, by which it may move and still go as it promises
+_LED_S = (0.002, 0.02)  # within which recorded speeds lead, at first closely
+_ASTRAY = 2.0  # noises left, above which they do
 _OF_A_SAMPLE = (0.02, 0.25, 0.5, 0.75, 0.98)  # where a dead time may be within the sample that it ends in
 
 
@@ -40,6 +42,7 @@ class Candidates:
     problem: Problem
     values: float = 2.0  # independent ones that the data hold, by the best hypothesis so far
     found: dict[tuple[str, ...], Candidate] = field(default_factory=dict)
+    straying: set[str] = field(default_factory=set)  # names that promise more where recorded speeds lead
 
     @property
     def best(self) -> Candidate:
@@ -128,6 +131,10 @@ class Candidates:
         """
         goes_on = near is not None and near.point.hypothesis is hypothesis
         point = near.point if near and goes_on else self._begun(hypothesis, near)
+        if self.strays(hypothesis) and not goes_on and (near is None or self.is_astray(near)):
+            led = self.led(point, held)
+            led = with_better_starts(self.problem, point_at(self.problem, led.hypothesis, led.starts))
+            point = max(point, led, key=lambda one: self.score(self.judged(one)))
         best = before = self.judged(point)
         problem = self.problem
         if at_least > -math.inf and not (goes_on or hypothesis.is_abrupt):
@@ -156,6 +163,39 @@ class Candidates:
         key = tuple(sorted(best.names))
         self.found[key] = max(self.found.get(key, best), best, key=self.score)
         return best
+
+    def led(self, point: Point, held: frozenset[str] = frozenset()) -> Point:
+        """A hypothesis fitted where recorded speeds lead it, its errors those of `led_problem`.
+
+        What bends makes minima at wrong numbers: where a motion went astray nothing leads it back. Coupled to
+        what was recorded it comes back by itself, and one minimum stays (H. Abarbanel, D. Creveling, R.
+        Farsian, M. Kostuk, SIAM J. Appl. Dyn. Syst. 8 (2009) 1341).
+        """
+        led = point
+        for time_s in _LED_S:
+            problem, had = replace(self.problem, led_s=time_s), -math.inf
+            led = point_at(problem, led.hypothesis, led.starts)
+            for _ in range(ROUNDS):
+                powers = led.powers(problem)
+                has = float(np.sum(powers.log_likelihood(problem.noise)))
+                if has < had + GROWING:
+                    break
+                led, had = fit(problem.weighed_by(powers.spectrum(problem.noise)), led, held), has
+        return led
+
+    def strays(self, hypothesis: Hypothesis) -> bool:
+        """Whether an effect may send motion astray: a play, or what promised little until it was led."""
+        return hypothesis.is_abrupt or not self.straying.isdisjoint(hypothesis.names)
+
+    def is_astray(self, near: Candidate) -> bool:
+        """Whether a candidate leaves so much that motion may go its own way."""
+        left = self.problem.mean_square(near.point.errors) / self.problem.noise**2
+        return bool(np.nanmax(left) > _ASTRAY**2)
+
+    @property
+    def led_problem(self) -> Problem:
+        """The problem where recorded speeds lead each simulation."""
+        return replace(self.problem, led_s=_LED_S[-1])
 
     def _within_a_sample(self, best: Candidate) -> Candidate:
         """With the likeliest dead time of those that delay a rigid axle by as many samples.

@@ -16,12 +16,14 @@ from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._noise import proven_noise
 from hil.analysis.missing_effects._odds import Candidate
 from hil.analysis.missing_effects._outcome import Outcome, Replay
+from hil.analysis.missing_effects._phase import tracked
 from hil.analysis.missing_effects._problem import Problem, problem_of
 from hil.analysis.missing_effects._search import search
 from hil.analysis.missing_effects._series import Series
 from hil.analysis.missing_effects._share import Judged
 from hil.analysis.missing_effects._simulations import INTERRUPTED, OUT_OF_TIME, Allowance, OutOfTimeError
 from hil.analysis.missing_effects._verdict import as_far_as_known, judged
+from hil.core.effects import EFFECTS
 from hil.core.model import Model
 
 Array = npt.NDArray[np.float64]
@@ -103,6 +105,14 @@ class _Shown:
                 return one.point
         return with_better_starts(problem, point_at(problem, hypothesis))
 
+    def errors(self, problem: Problem, hypothesis: Hypothesis) -> tuple[Array, ...]:
+        """Of each recording of a problem; of one that no fit sees with angles as a ripple tells them."""
+        point = self.point(problem, hypothesis)
+        if problem is self.problem or not any(EFFECTS[use.id].law.follows for use in hypothesis.terms):
+            return point.errors
+        turned, _ = tracked(problem, point)
+        return with_better_starts(turned, point_at(turned, hypothesis, point.starts)).errors
+
     def left(self, candidate: Candidate) -> Array:
         """Mean square of errors in each channel over all recordings, (3,); NaN if not recorded.
 
@@ -115,4 +125,4 @@ class _Shown:
     def _left(self, hypothesis: Hypothesis) -> Array:
         both = (self.problem,) if self.unseen is self.problem else (self.problem, self.unseen)
         whole = replace(self.problem, series=tuple(s for one in both for s in one.series))
-        return whole.mean_square([e for one in both for e in self.point(one, hypothesis).errors])
+        return whole.mean_square([e for one in both for e in self.errors(one, hypothesis)])

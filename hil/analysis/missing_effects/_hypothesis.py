@@ -183,6 +183,18 @@ def label_of(use: EffectUse) -> str:
     return EFFECTS[use.id].label(use.values)
 
 
+def is_linear(use: EffectUse) -> bool:
+    """Whether an effect changes the linear chain or what a sensor reads, and no law bends."""
+    law = EFFECTS[use.id].law
+    return (law.chain is not None or law.reads is not None) and law.tyre_rate is None
+
+
+def is_loss(use: EffectUse) -> bool:
+    """Whether an effect brakes whatever turns: a friction, a drag, a resistance."""
+    law = EFFECTS[use.id].law
+    return law.follows is None and any(one is not None for one in (law.dry, law.loss, law.load))
+
+
 def _of_effect(index: int, use: EffectUse, parameter: Parameter) -> Coordinate:
     """A number of an effect; a gain is calibrated as numbers of a base are, or it may be anything."""
     effect, value = EFFECTS[use.id], float(use.values[parameter.name])

@@ -9,12 +9,12 @@ import numpy as np
 
 from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._fit import Linearised, Point, point_at
-from hil.analysis.missing_effects._hypothesis import TOLERANCE, Hypothesis
+from hil.analysis.missing_effects._hypothesis import TOLERANCE, Hypothesis, is_loss
 from hil.analysis.missing_effects._odds import ALIKE, Candidate
 from hil.analysis.missing_effects._outcome import Named
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import NUMBERS, Scene, may_join
-from hil.analysis.missing_effects._search import HALF, is_loss
+from hil.analysis.missing_effects._search import HALF
 from hil.analysis.missing_effects._spectrum import RIGHT_TO
 from hil.core.effects import EFFECTS, Effect
 from hil.core.model import EffectUse, Model
@@ -137,10 +137,11 @@ def mismatches(
     from scipy.special import ndtr
 
     found = []
-    for name, (_, value, error) in as_known(done.problem, numbers).items():
+    known = as_known(done.problem, numbers)
+    for name, (_, value, error) in known.items():
         if best.names and (name in as_the_base or not _stands_beside(name, best, done.problem.model)):
             continue
-        moved, doubt = _off(name, numbers, done)
+        moved, doubt = _off(name, known, done)
         alike = gains.get(name, ())
         sure = 0.0
         for one, weight in weighed:

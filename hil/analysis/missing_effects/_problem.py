@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
@@ -16,7 +17,7 @@ from hil.analysis.missing_effects._simulations import UNBOUNDED, Allowance, Show
 from hil.analysis.missing_effects._spectrum import RIGHT_TO, Powers, Spectrum, of_noise, powers_of
 from hil.core.model import Model, TransferFunction
 from hil.core.runtime.thread_map import map_on_threads
-from hil.plant import SENSOR_TURNED, begins_of, gear_ratio_of, is_regulated, pack, simulate_many, turns
+from hil.plant import SENSOR_TURNED, Led, begins_of, gear_ratio_of, is_regulated, pack, simulate_many, turns
 
 Array = npt.NDArray[np.float64]
 _Result = TypeVar("_Result")
@@ -39,7 +40,8 @@ class Problem:
     errors are weighed by; `scales` are sizes of numbers that may be zero, `held` numbers without effect.
     `colour` (3 x bands) is that of noise, None where it is white; `tells_noise` whether the torque differs so
     much between windows that what all of them show is noise. Of a base that is `far` off as a whole only a
-    count of teeth says something. Every simulation asks `allowance` first.
+    count of teeth says something. Where `led_s` is not 0, recorded speeds lead each simulation within that
+    time. Every simulation asks `allowance` first.
     """
 
     model: Model
@@ -53,6 +55,7 @@ class Problem:
     colour: Array | None = None
     tells_noise: bool = False
     far: bool = False
+    led_s: float = 0.0
     shown: Shown = field(default_factory=Shown, repr=False, compare=False)
     allowance: Allowance = UNBOUNDED
 
@@ -176,14 +179,23 @@ class Problem:
         slots, sensors = np.stack([p[0] for p in packed]), self.sensors(index, [p[1] for p in packed])
         begins = starts if self.functions else begins_of(slots, starts)
         keys = [
-            (id(one), id(angles) if follows else 0, p.tobytes(), sensor.tobytes(), begin.tobytes())
+            (
+                id(one),
+                id(angles) if follows else 0,
+                p.tobytes(),
+                sensor.tobytes(),
+                begin.tobytes(),
+                self.led_s,
+            )
             for p, sensor, begin, follows in zip(slots, sensors, begins, turns(slots).tolist(), strict=True)
         ]
+
+        led = Led(one.samples[:, :2], -math.expm1(-one.dt / self.led_s)) if self.led_s else None
 
         def simulate(some: npt.NDArray[np.int64]) -> Array:
             shown = simulate_many(
                 slots[some], one.torque, one.dt, begins[some], sensors[some], one.block, angles, one.load,
-                self.functions,
+                self.functions, led=led,
             )  # fmt: skip
             return _bounded(shown)
 

@@ -7,18 +7,16 @@ optimum each, no search over simulations.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import qmc
 
 from hil.analysis.missing_effects._fit import Linearised, Point
-from hil.analysis.missing_effects._hypothesis import Coordinate, Hypothesis, label_of
+from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of
 from hil.analysis.missing_effects._orders import orders_of
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._projection import Projection
@@ -33,11 +31,8 @@ Array = npt.NDArray[np.float64]
 NUMBERS = {"dead_time": "torque_delay", "viscous_drag": "viscous_drag"}
 """Effects that are a change of a number which a base may have, and which is free there."""
 _AT_ONCE = 24  # simulations
-_DRAWS = 64  # of an abrupt effect's numbers
-_AROUND = 0.25  # of the logarithm of numbers that it must have
-_FAR = 1.4  # of the logarithm of optional ones, which are known less
 _SIDES: tuple[Literal["wheel", "rotor"], ...] = ("wheel", "rotor")
-_AS_IT_IS, _STRETCHED = Direction({}, 1.0, 1.0), (Direction({}, *STRETCH),)
+_STRETCHED = (Direction({}, *STRETCH),)
 
 
 @dataclass(frozen=True)
@@ -214,60 +209,9 @@ def promised_by(problem: Problem, at: Linearised, hypotheses: Sequence[Hypothesi
     return [project.explained(of, slice(i, i + 1), _STRETCHED).gain for i in range(len(hypotheses))]
 
 
-def at_its_best(
-    problem: Problem, at: Linearised, hypotheses: Sequence[Hypothesis]
-) -> tuple[float, Hypothesis]:
-    """Of neighbours of a point the one that promises most growth of log L, its other numbers moved along."""
-    project = Projection(problem, at)
-    gain, best = -math.inf, at.point.hypothesis
-    for first in range(0, len(hypotheses), _AT_ONCE):
-        some = hypotheses[first : first + _AT_ONCE]
-        of = project.products(some)
-        for place, one in enumerate(some):
-            found = project.explained(of, slice(place, place + 1), (_AS_IT_IS,))
-            if found.gain > gain:
-                gain, best = found.gain, one.moved(at.coordinates, found.moves)
-    return gain, best
-
-
 def best_by_name(found: Sequence[Promise], each: int) -> list[list[Promise]]:
     """The `each` most promising sizes of every name, names by their best one."""
     names: dict[str, list[Promise]] = {}
     for one in sorted(found, key=lambda one: -one.gain):
         names.setdefault(one.label, []).append(one)
     return [sizes[:each] for sizes in names.values()]
-
-
-def other_minimum(problem: Problem, at: Linearised, reach: float) -> tuple[float, Hypothesis]:
-    """Growth of log L that another minimum of the abrupt effects promises, and where a fit of it begins.
-
-    The effect's own numbers are drawn around where a fit ended (Sobol's sequence); every other number follows
-    to first order (variable projection, G. Golub, V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413), so that a
-    draw costs one simulation.
-
-    Args:
-        reach: how far it is looked for, as a share of the usual way.
-    """
-    hypothesis = at.point.hypothesis
-    mine = [one.term >= 0 and EFFECTS[hypothesis.terms[one.term].id].abrupt for one in at.coordinates]
-    own = [one for one, is_own in zip(at.coordinates, mine, strict=True) if is_own]
-    rest = at.holding(mine)
-    drawn = [hypothesis.moved(own, _moves(own, hypothesis, reach * x)) for x in _draws(len(own))]
-    return at_its_best(problem, rest, drawn)
-
-
-def _moves(own: list[Coordinate], hypothesis: Hypothesis, draw: Array) -> Array:
-    """Coordinates of numbers times e^(reach x), x from -1 to 1; one that is zero stays."""
-    found = np.zeros(len(own))
-    for index, (one, x) in enumerate(zip(own, draw.tolist(), strict=True)):
-        parameters = EFFECTS[hypothesis.terms[one.term].id].parameters
-        optional = next(p.optional for p in parameters if p.name == one.name)
-        value = one.at(0.0) * float(np.exp((_FAR if optional else _AROUND) * x))
-        found[index] = one.of(min(max(value, one.lower), one.upper))
-    return found
-
-
-@lru_cache
-def _draws(numbers: int) -> Array:
-    """In -1 to 1, (draws, numbers); the same ones every time."""
-    return np.asarray(2.0 * qmc.Sobol(numbers, scramble=False).random(_DRAWS) - 1.0)

@@ -11,11 +11,12 @@ import numpy as np
 from hil.analysis.missing_effects._balance import read_numbers, readings
 from hil.analysis.missing_effects._candidates import GROWING, MOST_ROUNDS, Candidates
 from hil.analysis.missing_effects._fit import (
+    Linearised,
     linearised,
     point_at,
     with_better_starts,
 )
-from hil.analysis.missing_effects._hypothesis import Hypothesis
+from hil.analysis.missing_effects._hypothesis import Hypothesis, is_linear, is_loss
 from hil.analysis.missing_effects._linear import structures
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains
 from hil.analysis.missing_effects._phase import errors_of
@@ -23,20 +24,16 @@ from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import (
     Scene,
     best_by_name,
-    other_minimum,
     promised_by,
     promises,
 )
-from hil.core.effects import EFFECTS
+from hil.core.effects import EFFECTS, Parameter
 from hil.core.model import EffectUse
 
 HALF = 0.5  # of what stays without it a name must take off
 _TRIED = 8  # hypotheses that a step begins with, the most promising ones; half of them go on each time
 _RIVALS = 2  # of a step are fitted to their end
 _BESIDE = 0.3  # of an effect's first number: where an optional one in the same unit begins
-_ASIDE = (0.98, 1.02)  # times an optional number that is set already: to see what moving it could bring
-_FAR = (0.25, 0.5, 2.0, 4.0)  # times the same: a fit begins there, as a play has many minima
-_REACHES = (1.0, 0.25)  # how far another minimum is looked for: as far as usual, then near
 _MOST_NAMES = 4
 _NEAR_WHOLE, _SURE = 0.05, 3.0  # of an order; standard errors
 
@@ -65,7 +62,7 @@ def search(done: Candidates, show: Callable[[str], None]) -> None:
             break
         had, has = (problem.mean_square(one.point.errors) for one in (best, grown))
         was_weak, weak = weak, remains(had, has, *problem.noise_in(grown.point.errors)) > HALF
-        if weak and was_weak:
+        if weak and (was_weak or best.point.hypothesis.is_abrupt):
             break  # of two that go together the first may take off less than half, the second does not
         best = _with_whole_orders(done, _with_better_angles(done, _pruned(done, grown, show)))
 
@@ -73,10 +70,15 @@ def search(done: Candidates, show: Callable[[str], None]) -> None:
 def _with_better_angles(done: Candidates, best: Candidate) -> Candidate:
     """Go on; fit a ripple to angles as they are better known after it, while its likelihood grows."""
     for _ in range(MOST_ROUNDS):
+        angles = done.problem.angles
         begins = done.go_on_from(best)
         if begins is best:
             return best
-        had, best = best.log_likelihood, done.fitted(begins.point.hypothesis, begins)
+        had, fitted = best.log_likelihood, done.fitted(begins.point.hypothesis, begins)
+        if fitted.log_likelihood < had - ALIKE:  # what else is missing has spoiled them
+            done.problem = replace(done.problem, angles=angles)
+            return best
+        best = fitted
         if best.log_likelihood < had + GROWING:
             break
     return best
@@ -182,12 +184,6 @@ def _among_losses(done: Candidates, grown: Candidate, show: Callable[[str], None
     return max((best, *ended), key=done.score)
 
 
-def is_loss(use: EffectUse) -> bool:
-    """Whether an effect brakes whatever turns: a friction, a drag, a resistance."""
-    law = EFFECTS[use.id].law
-    return law.follows is None and any(one is not None for one in (law.dry, law.loss, law.load))
-
-
 def _best_of(
     done: Candidates,
     best: Candidate,
@@ -214,7 +210,7 @@ def _best_of(
         if may_reach > least:
             ended = _opened(done, done.fitted(one.point.hypothesis, one, at_least=least), show)
             grown = ended if grown is None else max(grown, ended, key=done.score)
-    return grown and _out_of_minima(done, grown)
+    return grown
 
 
 def _most_promising(done: Candidates, begun: Sequence[Candidate]) -> list[tuple[float, Candidate]]:
@@ -225,21 +221,6 @@ def _most_promising(done: Candidates, begun: Sequence[Candidate]) -> list[tuple[
         if one.names not in found or may_reach > found[one.names][0]:
             found[one.names] = may_reach, one
     return list(found.values())
-
-
-def _out_of_minima(done: Candidates, best: Candidate) -> Candidate:
-    """A hypothesis with an abrupt effect, fitted again from where another minimum promises more."""
-    if not best.point.hypothesis.is_abrupt:
-        return best
-    reaches = list(_REACHES)
-    while reaches:
-        problem = done.weighed_as(best)
-        gain, begins = other_minimum(problem, linearised(problem, best.point), reaches[0])
-        tried = done.fitted(begins, best, at_least=done.score(best)) if gain > GROWING else best
-        if done.score(tried) < done.score(best) + GROWING:
-            reaches.pop(0)
-        best = max(best, tried, key=done.score)
-    return best
 
 
 def _best_of_each_name(done: Candidates, tried: Sequence[Candidate]) -> list[Candidate]:
@@ -271,15 +252,26 @@ def _suggested(done: Candidates, best: Candidate) -> list[tuple[Hypothesis, floa
     if beside and gained > HALF * done.problem.most_to_gain(best.point.errors):
         return [*found, *beside]  # others promise less from where that is
     promised = promises(done.problem, linearised(done.problem, best.point))
+    most = max((one.gain for one in promised), default=0.0)
+    bends = best.point.hypothesis.kind != "rigid" and done.is_astray(best)
+    if bends and most < HALF * done.problem.most_to_gain(best.point.errors):
+        led = promises(*_where_led(done, best), lambda use: not (is_linear(use) or is_loss(use)))
+        done.straying |= {one.label for one in led if one.gain > max(most, least)}
+        promised = [*promised, *led]
     for sizes in best_by_name([one for one in promised if one.gain > least], _RIVALS):
-        abrupt = EFFECTS[sizes[0].use.id].abrupt
-        for one in sizes if abrupt else sizes[:1]:
-            starts = (base.with_term(one.use) for base in (best.point.hypothesis, one.numbers))
-            found.append((_likelier(done, best, *starts), one.gain))
+        starts = (base.with_term(sizes[0].use) for base in (best.point.hypothesis, sizes[0].numbers))
+        found.append((_likelier(done, best, *starts), sizes[0].gain))
         elsewhere = _as_elsewhere(done, best, sizes[0].label)
         if elsewhere:
             found.append((_likelier(done, best, *elsewhere), sizes[0].gain))
     return [*found, *beside]
+
+
+def _where_led(done: Candidates, best: Candidate) -> tuple[Problem, Linearised]:
+    """The problem where recorded speeds lead, weighed by what a hypothesis leaves there, and that point."""
+    led = done.led(best.point)
+    problem = done.led_problem.weighed_by(led.powers(done.problem).spectrum(done.problem.noise))
+    return problem, linearised(problem, led)
 
 
 def _as_elsewhere(done: Candidates, best: Candidate, label: str) -> list[Hypothesis]:
@@ -343,42 +335,49 @@ def _opened(done: Candidates, best: Candidate, show: Callable[[str], None]) -> C
 
 
 def _opened_of(done: Candidates, best: Candidate, index: int, show: Callable[[str], None]) -> Candidate:
-    """With those optional numbers of one of its effects that earn their place."""
-    for parameter in EFFECTS[best.point.hypothesis.terms[index].id].parameters:
-        hypothesis = best.point.hypothesis
-        opened = hypothesis.opened[index]
-        beside = parameter.beside and parameter.beside not in opened
-        if not parameter.opens or parameter.name in opened or beside:
-            continue
-        use = hypothesis.terms[index]
-        first = EFFECTS[use.id].parameters[0]
-        size = _BESIDE * abs(float(use.values[first.name])) if parameter.unit == first.unit else 0.0
-        set_already = float(use.values[parameter.name])
-        moved = set_already if set_already != parameter.default else 0.0
-        aside, far = [moved * factor for factor in _ASIDE], [moved * factor for factor in _FAR]
-        unit = Scene(done.problem, hypothesis).torque_nm if parameter.unit == "N m" else 1.0
-        opens = [unit * value for value in parameter.opens]
-        wider = [
-            hypothesis.with_values(index, {parameter.name: value}, opened | {parameter.name})
-            for value in (*opens, size, -size, *aside, *far)
-            if value and value != set_already and parameter.lower <= value <= parameter.upper
-        ]
+    """With those optional numbers of one of its effects that earn their place, other laws before numbers."""
+    parameters = EFFECTS[best.point.hypothesis.terms[index].id].parameters
+    led: tuple[Candidate, Problem, Linearised] | None = None
+    for parameter in sorted(parameters, key=lambda one: not one.choices):
+        wider = _wider(done, best.point.hypothesis, index, parameter)
         if not wider:
             continue
-        problem = done.weighed_as(best)
-        gains = promised_by(problem, linearised(problem, best.point), wider)
+        if led is None or led[0] is not best:
+            problem = done.weighed_as(best)
+            strays = done.strays(best.point.hypothesis)
+            led = best, *(_where_led(done, best) if strays else (problem, linearised(problem, best.point)))
+        gains = promised_by(*led[1:], wider)
         if max(gains) <= done.cost_of_a_number(best):
             continue
         show(f"fitting {best.names[index]}: {parameter.name}")
         begins = wider[int(np.argmax(gains))]
-        if begins.terms[index].values[parameter.name] in aside:
-            begins = hypothesis.with_values(index, {}, opened | {parameter.name})
         if 0.0 in parameter.opens:  # where it does nothing: a fit goes on from what is settled
-            begins = hypothesis.with_values(index, {parameter.name: 0.0}, opened | {parameter.name})
+            begins = begins.with_values(index, {parameter.name: 0.0}, begins.opened[index])
         tried = done.fitted(begins, best, _RIVALS)
         if done.score(tried) > done.score(best):  # the next one is judged by what this one leaves
             best = done.fitted(tried.point.hypothesis, tried)
     return best
+
+
+def _wider(done: Candidates, hypothesis: Hypothesis, index: int, parameter: Parameter) -> list[Hypothesis]:
+    """With an optional number of an effect where its file has it tried, or with another law of its choice."""
+    use, opened = hypothesis.terms[index], hypothesis.opened[index]
+    defaults = {one.name: one.default for one in EFFECTS[use.id].parameters}
+    if parameter.beside and not any(
+        name in opened or use.values[name] != defaults[name] for name in parameter.beside
+    ):
+        return []
+    values = list(parameter.choices)
+    if parameter.opens and parameter.name not in opened:
+        first = EFFECTS[use.id].parameters[0]
+        size = _BESIDE * abs(float(use.values[first.name])) if parameter.unit == first.unit else 0.0
+        unit = Scene(done.problem, hypothesis).torque_nm if parameter.unit == "N m" else 1.0
+        values = [one for one in (*(unit * value for value in parameter.opens), size, -size) if one]
+    return [
+        hypothesis.with_values(index, {parameter.name: value}, opened | {parameter.name})
+        for value in values
+        if value != float(use.values[parameter.name]) and parameter.lower <= value <= parameter.upper
+    ]
 
 
 def _pruned(done: Candidates, best: Candidate, show: Callable[[str], None]) -> Candidate:

@@ -24,13 +24,13 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._fit import Linearised, Point, without
-from hil.analysis.missing_effects._hypothesis import Hypothesis
+from hil.analysis.missing_effects._hypothesis import Hypothesis, is_linear, is_loss
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains
 from hil.analysis.missing_effects._orders import is_held, turns
 from hil.analysis.missing_effects._outcome import Replay
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import may_join
-from hil.analysis.missing_effects._search import HALF, is_loss
+from hil.analysis.missing_effects._search import HALF
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
 
@@ -70,21 +70,16 @@ def wrong_by_laws(of: Judged, best: Candidate, fewer: Sequence[Candidate], index
     """Variance in each channel, (3,), that others' laws may get wrong without an effect; not linear ones.
 
     A law that is wrong by a share leaves that of what it takes off in every channel, so no more than where
-    least stays.
+    least stays; and an effect that mends a law mends no more than half of it: as much stays.
     """
     left, alone = of.left(best), of.left(fewer[index])
+    noise, most = of.done.problem.noise_in(best.point.errors)
     wrong = np.zeros(3)
     for other, use in enumerate(best.point.hypothesis.terms):
         if other != index and not is_linear(use):
             taken = np.maximum(of.left(fewer[other]) - left, 1e-300)
             wrong += min(LAW**2, float(np.nanmin(alone / taken))) * taken
-    return wrong
-
-
-def is_linear(use: EffectUse) -> bool:
-    """Whether an effect changes the linear chain or what a sensor reads, and no law bends."""
-    law = EFFECTS[use.id].law
-    return (law.chain is not None or law.reads is not None) and law.tyre_rate is None
+    return np.minimum(wrong, np.maximum(left, most) - noise)
 
 
 def _is_sized(at: Linearised, index: int) -> bool:

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._curve import curves_of
 from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised, point_at
-from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of
+from hil.analysis.missing_effects._hypothesis import Hypothesis, is_linear, is_loss, label_of
 from hil.analysis.missing_effects._mismatch import (
     as_known,
     as_the_base_has,
@@ -32,12 +32,11 @@ from hil.analysis.missing_effects._odds import ALIKE, Candidate, weights_of
 from hil.analysis.missing_effects._outcome import Named, Outcome, Verdict
 from hil.analysis.missing_effects._phase import errors_of
 from hil.analysis.missing_effects._problem import Problem
-from hil.analysis.missing_effects._search import HALF, is_loss
+from hil.analysis.missing_effects._search import HALF
 from hil.analysis.missing_effects._share import (
     LAW,
     Judged,
     held_against_drift,
-    is_linear,
     share_of,
     wrong_by_laws,
 )
@@ -51,6 +50,7 @@ Array = npt.NDArray[np.float64]
 
 _LATE = {"actuator_lag": ("sensor_lag", "time_constant_s"), "dead_time": ("channel_skew", "delay_s")}
 _ALONE = 2  # single names that may, near noise
+_LED = 4  # candidates, whose odds are looked at where speeds lead
 _RIVALS = 3  # names that may take the place of another
 _SHOWN = 5  # alternatives
 _DRAWN = 40  # models, by which a figure of the new model is known
@@ -62,7 +62,7 @@ def as_far_as_known(of: Judged, why: str) -> Outcome:
     alone, candidates = done.found.get((), done.best), list(done.found.values())
     at = linearised(done.weighed_as(alone, once=True), alone.point)
     values = done.problem.powers(alone.point.errors, once=True).values(done.problem.noise)
-    weights = _weights(done.problem, candidates, values)
+    weights = _weights(done.problem, candidates, values)[None]
     numbers, model = numbers_of(at, of.asked), alone.point.hypothesis.model()
     return Outcome(
         "unknown", (), tuple(_others(of, alone, candidates, weights)), as_known(done.problem, numbers),
@@ -98,7 +98,9 @@ def judged(of: Judged) -> Outcome:
         candidates = [one for one in candidates if len(one.names) <= len(best.names)]
     values = done.problem.powers(best.point.errors, once=True).values(done.problem.noise)
     numbers = numbers_of(at, of.asked)
-    weights = _weights(done.problem, candidates, values)
+    weights = _weights(done.problem, candidates, values)[None]
+    if best.names and not near_noise and best.point.hypothesis.kind != "rigid":
+        candidates, weights = _also_where_led(done, candidates, weights, best)
     rivals = _alike(done, best, candidates, weights)
     effects: list[Named] = []
     doubtful: list[Named] = []
@@ -108,10 +110,10 @@ def judged(of: Judged) -> Outcome:
         (effects if named.confidence >= HALF else doubtful).append(named)
     if _may_be_off(of, at):
         effects += mismatches(
-            done, numbers, best, as_the_base, gains, [*zip(candidates, weights, strict=True)]
+            done, numbers, best, as_the_base, gains, [*zip(candidates, weights[0], strict=True)]
         )
     if done.problem.is_noise(best.point.errors):
-        effects += _roundings(done, float(weights[candidates.index(best)]))
+        effects += _roundings(done, float(weights[0, candidates.index(best)]))
     verdict: Verdict = "unknown"
     if effects:
         verdict = "named"
@@ -152,6 +154,22 @@ def _weights(problem: Problem, candidates: Sequence[Candidate], values: float) -
     once = (problem.powers(one.point.errors, once=True) for one in candidates)
     windows = np.stack([one.log_likelihood(problem.noise) for one in once])
     return weights_of(candidates, windows, values)
+
+
+def _also_where_led(
+    done: Candidates, candidates: Sequence[Candidate], weights: Array, best: Candidate
+) -> tuple[list[Candidate], Array]:
+    """The likeliest candidates, with their weights and with those that they have where recorded speeds lead.
+
+    Far from noise numbers make up for a law that is wrong as long as motion goes its own way.
+    """
+    leading = Candidates(done.led_problem)
+    ranked = np.argsort(-weights[0])[:_LED].tolist()
+    places = [*{*ranked, candidates.index(best)}]
+    some = [candidates[place] for place in places]
+    led = [leading.judged(done.led(one.point)) for one in some]
+    values = leading.problem.powers(led[some.index(best)].point.errors, once=True).values(done.problem.noise)
+    return some, np.stack([weights[0, places], _weights(leading.problem, led, values)])
 
 
 def _may_be_off(of: Judged, at: Linearised) -> bool:
@@ -331,9 +349,16 @@ def _alike(
 
 
 def _held(name: str, candidates: Sequence[Candidate], weights: Array, *others: str, but: str = "") -> float:
-    """Weight of all candidates that have a name, or one of others, `but` those that have that one."""
-    has = [not {name, *others}.isdisjoint(one.names) and but not in one.names for one in candidates]
-    return float(np.sum(weights[np.array(has)]))
+    """Weight of all candidates that have a name, or one of others, `but` those that have that one.
+
+    Args:
+        weights: kinds x candidates; of each name the least kind counts.
+    """
+    total, left = 0.0, np.array([but not in one.names for one in candidates])
+    for label in (name, *others):
+        has = left & [label in one.names for one in candidates]
+        total, left = total + float(np.min(np.sum(weights[:, has], axis=1))), left & ~has
+    return total
 
 
 def _apart(problem: Problem, one: Point, other: Point) -> float:
@@ -362,18 +387,18 @@ def _others(of: Judged, best: Candidate, candidates: Sequence[Candidate], weight
 
     Where that has no name, times the share of the misfit that goes with each, as of a name that is given.
     """
-    held: dict[str, tuple[float, EffectUse, Candidate]] = {}
-    for one, weight in zip(candidates, weights, strict=True):
+    held: dict[str, tuple[Array, EffectUse, Candidate]] = {}
+    for one, weight in zip(candidates, weights.T, strict=True):
         if best.names and {*best.names} <= {*one.names}:
             continue
         for label, use in zip(one.names, one.point.hypothesis.terms, strict=True):
             if label not in best.names:
-                had, _, likelier = held.get(label, (0.0, use, one))
-                held[label] = (had + float(weight), use, max(likelier, one, key=lambda c: c.log_likelihood))
-    ranked = sorted(held.values(), key=lambda pair: -pair[0])
+                had, _, likelier = held.get(label, (np.zeros(len(weights)), use, one))
+                held[label] = (had + weight, use, max(likelier, one, key=lambda c: c.log_likelihood))
+    ranked = sorted(held.values(), key=lambda one: -float(np.min(one[0])))
     found = []
-    for weight, use, one in ranked[:_SHOWN]:
-        share = 1.0
+    for kinds, use, one in ranked[:_SHOWN]:
+        weight, share = float(np.min(kinds)), 1.0
         if not best.names:
             at = linearised(of.done.weighed_as(one, once=True), one.point)
             index = one.names.index(label_of(use))

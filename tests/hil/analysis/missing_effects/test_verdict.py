@@ -50,12 +50,12 @@ def test_names_are_alike_where_one_is_in_the_place_of_the_other_at_odds_below_tw
         for use in uses:
             hypothesis = hypothesis.with_term(use)
         found.append(done.judged(point_at(done.problem, hypothesis)))
-    weights = np.array([0.1, 0.72, 0.15, 0.03])
+    weights = np.array([[0.1, 0.72, 0.15, 0.03]])
     assert _alike(done, found[0], found, weights) == {
         "running_resistance": ("load_viscous_drag",),
         "coulomb_friction": ("load_viscous_drag",),
     }
-    certain = np.array([0.96, 0.0, 0.004, 0.036])
+    certain = np.array([[0.96, 0.0, 0.004, 0.036]])
     assert _alike(done, found[0], found, certain) == {}
 
 
