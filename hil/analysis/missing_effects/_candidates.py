@@ -101,8 +101,7 @@ class Candidates:
         Args:
             once: what a torque that repeats itself shows again and again counts once, as in odds and errors.
         """
-        powers = self.problem.powers(candidate.point.errors, once=once)
-        return self.problem.weighed_by(powers.spectrum(self.problem.noise))
+        return self.problem.weighed_as(candidate.point.errors, once=once)
 
     def promised(self, candidate: Candidate) -> Explained:
         """What its numbers may still bring a candidate, weighed by what it leaves."""

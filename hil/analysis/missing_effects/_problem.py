@@ -63,6 +63,14 @@ class Problem:
         """The same, errors weighed by another spectrum."""
         return replace(self, spectrum=spectrum)
 
+    def weighed_as(self, errors: Sequence[Array], *, once: bool = False) -> Problem:
+        """The same, errors weighed by the spectrum of such errors.
+
+        Args:
+            once: what a torque that repeats itself shows again and again counts once, as in odds and errors.
+        """
+        return self.weighed_by(self.powers(errors, once=once).spectrum(self.noise))
+
     def weighed_by_noise(self) -> Problem:
         """The same, errors weighed by noise alone."""
         return self.weighed_by(of_noise(self.noise, self.rate_hz, self.colour))

@@ -50,7 +50,7 @@ def search(done: Candidates, show: Callable[[str], None]) -> None:
     problem = done.problem
     (start, _), *linear = _starts(problem)
     started = with_better_starts(problem, point_at(problem, start))
-    done.problem = problem.weighed_by(started.powers(problem).spectrum(problem.noise))
+    done.problem = problem.weighed_as(started.errors)
     best = done.fitted(start, None)
     best = _with_better_angles(done, done.fitted(best.point.hypothesis, best))
     weak = False
@@ -258,20 +258,26 @@ def _suggested(done: Candidates, best: Candidate) -> list[tuple[Hypothesis, floa
         led = promises(*_where_led(done, best), lambda use: not (is_linear(use) or is_loss(use)))
         done.straying |= {one.label for one in led if one.gain > max(most, least)}
         promised = [*promised, *led]
-    for sizes in best_by_name([one for one in promised if one.gain > least], _RIVALS):
-        starts = (base.with_term(sizes[0].use) for base in (best.point.hypothesis, sizes[0].numbers))
-        found.append((_likelier(done, best, *starts), sizes[0].gain))
-        elsewhere = _as_elsewhere(done, best, sizes[0].label)
+    for one, *_ in best_by_name([one for one in promised if one.gain > least], 1):
+        starts = (base.with_term(one.use) for base in (best.point.hypothesis, one.numbers))
+        found.append((_likelier(done, best, *starts), one.gain))
+        elsewhere = _as_elsewhere(done, best, one.label)
         if elsewhere:
-            found.append((_likelier(done, best, *elsewhere), sizes[0].gain))
+            found.append((_likelier(done, best, *elsewhere), one.gain))
     return [*found, *beside]
 
 
 def _where_led(done: Candidates, best: Candidate) -> tuple[Problem, Linearised]:
     """The problem where recorded speeds lead, weighed by what a hypothesis leaves there, and that point."""
     led = done.led(best.point)
-    problem = done.led_problem.weighed_by(led.powers(done.problem).spectrum(done.problem.noise))
+    problem = done.led_problem.weighed_as(led.errors)
     return problem, linearised(problem, led)
+
+
+def _as_it_is(done: Candidates, best: Candidate) -> tuple[Problem, Linearised]:
+    """The problem weighed by what a hypothesis leaves, and that point."""
+    problem = done.weighed_as(best)
+    return problem, linearised(problem, best.point)
 
 
 def _as_elsewhere(done: Candidates, best: Candidate, label: str) -> list[Hypothesis]:
@@ -337,16 +343,15 @@ def _opened(done: Candidates, best: Candidate, show: Callable[[str], None]) -> C
 def _opened_of(done: Candidates, best: Candidate, index: int, show: Callable[[str], None]) -> Candidate:
     """With those optional numbers of one of its effects that earn their place, other laws before numbers."""
     parameters = EFFECTS[best.point.hypothesis.terms[index].id].parameters
-    led: tuple[Candidate, Problem, Linearised] | None = None
+    asked: tuple[Candidate, Problem, Linearised] | None = None
     for parameter in sorted(parameters, key=lambda one: not one.choices):
         wider = _wider(done, best.point.hypothesis, index, parameter)
         if not wider:
             continue
-        if led is None or led[0] is not best:
-            problem = done.weighed_as(best)
+        if asked is None or asked[0] is not best:
             strays = done.strays(best.point.hypothesis)
-            led = best, *(_where_led(done, best) if strays else (problem, linearised(problem, best.point)))
-        gains = promised_by(*led[1:], wider)
+            asked = best, *(_where_led(done, best) if strays else _as_it_is(done, best))
+        gains = promised_by(*asked[1:], wider)
         if max(gains) <= done.cost_of_a_number(best):
             continue
         show(f"fitting {best.names[index]}: {parameter.name}")
