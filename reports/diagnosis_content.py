@@ -16,7 +16,6 @@ from hil.analysis.diagnosis import (
     why_no_step,
 )
 from hil.core.channels import OUTPUTS
-from hil.core.effects import EFFECTS
 from hil.core.errors.wording import multiple, share
 from hil.core.model import parameter_unit
 from reports import labels
@@ -274,19 +273,11 @@ def _changes(changes: Mapping[str, tuple[float, float, float]]) -> Table:
             labels.number(new),
             labels.number(error, significant=2),
             labels.share(new / old - 1.0, 2, signed=True) if old else labels.DASH,
-            _unit(name),
+            parameter_unit(name),
         )
         for name, (old, new, error) in changes.items()
     )
     return Table(("parameter", "from", "to", "standard error", "change", "unit"), rows, 1, 5)
-
-
-def _unit(name: str) -> str:
-    """Unit of a base parameter, or of an effect's number (its id, what it speaks of, its name)."""
-    id_, _, number = name.partition(".")
-    if not number:
-        return parameter_unit(name)
-    return EFFECTS[id_].parameter(number.rpartition(".")[2]).unit
 
 
 def _consequences(found: Diagnosis) -> Table:

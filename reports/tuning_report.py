@@ -10,6 +10,7 @@ import numpy as np
 from hil.analysis.comparison import ComparedRun
 from hil.analysis.tuning import (
     DEVICE_LIMIT,
+    ENVELOPE_LIMIT,
     PARAMETERS,
     Confirmation,
     Standing,
@@ -17,6 +18,7 @@ from hil.analysis.tuning import (
     values_of,
     within_hard_limits,
 )
+from hil.core.channels import CHANNELS
 from hil.core.recording import Recording
 from hil.core.result import RunResult, Segment
 from reports import labels
@@ -293,7 +295,7 @@ def _kept(found: Tuning) -> Table:
 def _limits_text(found: Tuning) -> str:
     count = len(found.trial.draws)
     cars = "nominal model" if count == 1 else f"least over the nominal model and {count - 1} sampled vehicles"
-    return f"Distance to the stability limits, % of each limit, {cars}. Margins are of the sampled loop."
+    return f"Distance to the limits, % of each, {cars}. Margins are of the sampled loop."
 
 
 def _limits(found: Tuning) -> Table:
@@ -305,10 +307,19 @@ def _limits(found: Tuning) -> Table:
         cells = (
             labels.share(min(t.limits.get(name, float("nan")) for t in one.tried)) for one in found.shown
         )
-        limit = getattr(found.trial.free.limits, name)
-        value = "yes" if isinstance(limit, bool) else labels.nominal(limit)
-        rows.append((_LIMITS.get(name, name.replace("_", " ")), value, *cells))
+        rows.append((*_limit_with_value(found, name), *cells))
     return Table(("limit", "value", *names), tuple(rows))
+
+
+def _limit_with_value(found: Tuning, name: str) -> tuple[str, str]:
+    """A hard limit in words and its value."""
+    if name.startswith(ENVELOPE_LIMIT):
+        channel = name.removeprefix(ENVELOPE_LIMIT)
+        limit = labels.quantity(found.trial.envelope[channel], CHANNELS[channel].unit)
+        return f"largest {labels.with_titles(channel)} of a run", limit
+    value = getattr(found.trial.free.limits, name)
+    shown = "yes" if isinstance(value, bool) else labels.nominal(value)
+    return _LIMITS.get(name, name.replace("_", " ")), shown
 
 
 def _device(found: Tuning) -> tuple[Part, ...]:

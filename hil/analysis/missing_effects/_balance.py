@@ -221,7 +221,7 @@ def latent_torque(hypothesis: Hypothesis, series: Sequence[Series]) -> tuple[Arr
 
 def read_numbers(model: Model, series: Sequence[Series]) -> Hypothesis | None:
     """The numbers alone as the balance reads them beside dry friction and an offset."""
-    alone = Hypothesis(model, dict(model.parameters))
+    alone = Hypothesis.alone(model)
     friction = alone.with_term(EffectUse("coulomb_friction", {"torque_nm": 1.0}), frozenset({"offset_nm"}))
     mass = mass_of(model.kind, series, model.parameters)
     if mass is None or any(use.id == "coulomb_friction" for use in model.effects):

@@ -81,7 +81,7 @@ def _searched(done: Candidates, show: Callable[[str], None]) -> str:
     except OutOfTimeError:
         done.problem.allowance.lift()
         if not done.found:  # nothing was fitted yet: the model as it came
-            base = Hypothesis(done.problem.model, dict(done.problem.model.parameters))
+            base = done.problem.as_it_came
             started = with_better_starts(done.problem, point_at(done.problem, base))
             done.found[()] = done.judged(started)
             done.go_on_from(done.found[()])

@@ -90,6 +90,12 @@ class Hypothesis:
         """Names of the effects, each with the channel that it is about."""
         return tuple(label_of(use) for use in self.terms)
 
+    @classmethod
+    def alone(cls, base: Model) -> Hypothesis:
+        """A base as it came: all its numbers, those of the effects that it carries included."""
+        carried = {name: float(use.values[one.name]) for name, (use, one) in _carried(base).items()}
+        return cls(base, {**base.parameters, **carried})
+
     def with_number(self, name: str, value: float) -> Hypothesis:
         """The same, one number of the base another one."""
         return replace(self, numbers={**self.numbers, name: value})
@@ -121,7 +127,7 @@ class Hypothesis:
     @property
     def is_abrupt(self) -> bool:
         """Whether an effect makes the misfit jump with every number, as the contact of a play does."""
-        return any(EFFECTS[use.id].abrupt for use in self.terms)
+        return any(EFFECTS[use.id].abrupt for use in (*self.base.effects, *self.terms))
 
     @property
     def kind(self) -> str:
@@ -130,9 +136,17 @@ class Hypothesis:
 
     def model(self) -> Model:
         """The model that it is, to simulate or to write."""
-        return replace(
-            self.base, parameters=dict(self.numbers), effects=(*self.base.effects, *self.terms), meta={}
-        )
+        parameters = {name: self.numbers[name] for name in self.base.parameters}
+        effects = (*self._carried(), *self.terms)
+        return replace(self.base, parameters=parameters, effects=effects, meta={})
+
+    def _carried(self) -> list[EffectUse]:
+        """Effects of the base, their numbers as they are now."""
+        now: dict[int, dict[str, float | str]] = {}
+        for name, (use, one) in _carried(self.base).items():
+            if name in self.numbers:
+                now.setdefault(id(use), dict(use.values))[one.name] = self.numbers[name]
+        return [EffectUse(use.id, now.get(id(use), use.values)) for use in self.base.effects]
 
     def chain(self) -> Chain:
         """Linear numbers of the model that it is."""
@@ -148,7 +162,13 @@ class Hypothesis:
         return found
 
     def _number(self, name: str, scales: Mapping[str, float]) -> Coordinate:
-        value, base = float(self.numbers[name]), float(self.base.parameters[name])
+        value = float(self.numbers[name])
+        if name not in self.base.parameters:
+            use, parameter = _carried(self.base)[name]
+            base = float(use.values[name.rpartition(".")[2]]) or None
+            one = _of_effect(-1, EffectUse(use.id, {**use.values, parameter.name: value}), parameter)
+            return replace(one, name=name, base=base)
+        base = float(self.base.parameters[name])
         if name in scales:  # may be zero
             if name != "torque_delay":
                 return Coordinate(-1, name, value, scales[name], False, 0.0, math.inf)
@@ -176,6 +196,22 @@ class Hypothesis:
         """(slots, sensors 3 x numbers) for the kernels."""
         model = self.model()
         return pack(model), np.stack([sensor_of(model, channel) for channel in OUTPUTS])
+
+
+def _carried(base: Model) -> dict[str, tuple[EffectUse, Parameter]]:
+    """Numbers of the effects of a base that a fit may move, by name: `coulomb_friction.torque_nm`.
+
+    Of what follows an angle only the size: order and phase are those of the angles that it was found with.
+    """
+    found = {}
+    for use in base.effects:
+        effect = EFFECTS[use.id]
+        about = [value for value in use.values.values() if isinstance(value, str)]
+        for one in effect.parameters:
+            acts = one.name in effect.acting() or not effect.law.follows
+            if one.fitted and acts and use.values.get(one.name, one.default) != one.default:
+                found[".".join([use.id, *about, one.name])] = use, one
+    return found
 
 
 def label_of(use: EffectUse) -> str:

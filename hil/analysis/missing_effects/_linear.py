@@ -204,7 +204,7 @@ def structures(problem: Problem) -> list[tuple[Hypothesis, float]]:
     responses = responses_of(problem)
     if responses is None:
         return []
-    base = Hypothesis(problem.model, dict(problem.model.parameters))
+    base = problem.as_it_came
     near = responses.fitted(base)
     alone = max((near, _best(responses, _scattered(responses, [base]))), key=responses.posterior)
     found: list[tuple[Hypothesis, float]] = []
@@ -242,7 +242,7 @@ def _scattered(responses: Responses, starts: Sequence[Hypothesis]) -> list[Hypot
         free = [
             one
             for one in responses.problem.coordinates(start)
-            if one.logarithmic and one.name != "gear_ratio"
+            if one.logarithmic and one.name != "gear_ratio" and one.name in start.base.parameters
         ]
         found.append(start.moved(free, rng.normal(0.0, _SPREAD, len(free))))
     return found

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -34,9 +33,9 @@ def as_the_base_has(done: Candidates, best: Candidate) -> frozenset[str]:
         if base <= 0.0 or abs(hypothesis.numbers[name] - base) <= _tolerance(name, base, done):
             continue
         alike = [one for one in done.found.values() if done.score(one) > done.score(best) - ALIKE]
-        begins = [_with_number(one.point.hypothesis, name, base) for one in alike]
+        begins = [one.point.hypothesis.with_number(name, base) for one in alike]
         fewer = [
-            _with_number(hypothesis, name, base).closed(index, optional)
+            hypothesis.with_number(name, base).closed(index, optional)
             for index, opened in enumerate(hypothesis.opened)
             for optional in sorted(opened)
         ]
@@ -55,7 +54,7 @@ def gains_instead(done: Candidates, best: Candidate) -> dict[str, tuple[str, ...
         return {}
     hypothesis, found = best.point.hypothesis, {}
     for name in done.has_moved(best):
-        back = _with_number(hypothesis, name, done.problem.model.parameters[name])
+        back = hypothesis.with_number(name, done.problem.as_it_came.numbers[name])
         tried = [
             done.fitted(back.with_term(use), best, held=frozenset({name})) for use in gains_of(done, back)
         ]
@@ -88,8 +87,9 @@ def _on_each_channel(done: Candidates, hypothesis: Hypothesis, effect: Effect) -
 
 def numbers_of(at: Linearised, asked: Model) -> dict[str, tuple[float, float, float]]:
     """Numbers of the base: as it came, as found, standard error."""
+    as_it_came = Hypothesis.alone(asked).numbers
     return {
-        name: (float(asked.parameters[name]), float(value), at.standard_error(-1, name))
+        name: (float(as_it_came[name]), float(value), at.standard_error(-1, name))
         for name, value in at.point.hypothesis.numbers.items()
     }
 
@@ -171,7 +171,7 @@ def _off(
 
 def _away(name: str, found: float, done: Candidates) -> float:
     """How far a number is from what the base says, in tolerances."""
-    base = done.problem.model.parameters[name]
+    base = done.problem.as_it_came.numbers[name]
     return abs(found - base) / _tolerance(name, base, done)
 
 
@@ -193,12 +193,8 @@ def _stands_beside(name: str, best: Candidate, base: Model) -> bool:
 
 def _shows(problem: Problem, point: Point, name: str) -> bool:
     """Whether a number of the base put back moves a channel by more than what no model is right to."""
-    base = problem.model.parameters[name]
-    back = point_at(problem, _with_number(point.hypothesis, name, base), point.starts)
+    as_it_came = point.hypothesis.with_number(name, problem.as_it_came.numbers[name])
+    back = point_at(problem, as_it_came, point.starts)
     pairs = zip(back.errors, point.errors, strict=True)
     moved = problem.mean_square([one - other for one, other in pairs])
     return bool(np.nanmax(moved / np.maximum(problem.signal, 1e-300)) > RIGHT_TO**2)
-
-
-def _with_number(hypothesis: Hypothesis, name: str, value: float) -> Hypothesis:
-    return replace(hypothesis, numbers={**hypothesis.numbers, name: value})

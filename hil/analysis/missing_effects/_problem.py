@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
@@ -82,6 +83,11 @@ class Problem:
             for one in hypothesis.coordinates(self.scales)
             if one.term >= 0 or one.name not in self.held
         ]
+
+    @cached_property
+    def as_it_came(self) -> Hypothesis:
+        """The base with its own numbers."""
+        return Hypothesis.alone(self.model)
 
     @property
     def functions(self) -> dict[str, TransferFunction] | None:

@@ -114,7 +114,7 @@ def _starts(problem: Problem) -> list[tuple[Hypothesis, float]]:
 
     Of a chain with shafts the base's own numbers stay where they are the likelier.
     """
-    base = Hypothesis(problem.model, dict(problem.model.parameters))
+    base = problem.as_it_came
     if problem.functions:
         return [(base, 0.0)]
     read = read_numbers(problem.model, problem.series)
@@ -303,7 +303,7 @@ def _beside_the_base(done: Candidates, best: Candidate, least: float) -> list[tu
     """
     if best.names:
         return []
-    base = Hypothesis(done.problem.model, dict(done.problem.model.parameters))
+    base = done.problem.as_it_came
     near = done.at(base, best)
     near = done.judged(with_better_starts(done.problem, near.point))
     behind = done.score(best) - done.score(near)

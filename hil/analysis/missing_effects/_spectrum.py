@@ -28,7 +28,7 @@ from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import gamma
+from scipy.special import gammaincinv, gammaln
 
 Array = npt.NDArray[np.float64]
 Channels = npt.NDArray[np.bool_]
@@ -293,8 +293,8 @@ def _unseen(blocks: int, rate_hz: float) -> Array:
 @lru_cache
 def _lower_quartile(shape: float) -> tuple[float, float]:
     """Of a gamma distribution, and its density there times that."""
-    usual = float(gamma.ppf(_QUIET, shape))
-    return usual, usual * float(gamma.pdf(usual, shape))
+    usual = float(gammaincinv(shape, _QUIET))
+    return usual, math.exp(shape * math.log(usual) - usual - float(gammaln(shape)))
 
 
 def powers_of(

@@ -258,7 +258,7 @@ def _in_its_place(
     near = max(joined, replace(joined, numbers=other.numbers), key=lambda one: done.score(done.at(one, best)))
     if not done.has_moved(best):
         return [near]
-    as_it_came = replace(joined, numbers=dict(fewer.base.parameters))
+    as_it_came = replace(joined, numbers=done.problem.as_it_came.numbers)
     held = done.fitted(as_it_came, best, held=frozenset(joined.numbers), at_least=least)
     return [near, held.point.hypothesis]
 

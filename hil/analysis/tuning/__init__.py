@@ -26,12 +26,21 @@ from hil.analysis.tuning._segment_loops import (
     sliding,
     with_mass,
 )
-from hil.analysis.tuning._trial import DEVICE_LIMIT, CarryOut, Predicted, Trial, Tried, channels_needed
+from hil.analysis.tuning._trial import (
+    DEVICE_LIMIT,
+    ENVELOPE_LIMIT,
+    CarryOut,
+    Predicted,
+    Trial,
+    Tried,
+    channels_needed,
+)
 from hil.analysis.tuning._tune import Standing, Tuning, refuse_model, refuse_start, tune
 
 __all__ = [
     "ALTERNATIVES",
     "DEVICE_LIMIT",
+    "ENVELOPE_LIMIT",
     "KEPT",
     "PARAMETERS",
     "Agreement",

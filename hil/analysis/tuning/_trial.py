@@ -37,6 +37,11 @@ from test_plans.criteria import Criterion
 #: Prefix of the hard limits that are checks of what any device must do.
 DEVICE_LIMIT = "device."
 
+#: Prefix of the hard limits that are largest magnitudes of a whole run, by channel.
+ENVELOPE_LIMIT = "envelope."
+#: Of such a magnitude: a run with noise, or predicted in finer steps, may show more.
+_ENVELOPE_ROOM = 0.01
+
 #: What a candidate counts that keeps no hard limit, and one that cannot be run at all.
 INFEASIBLE, UNSTABLE = -2.0, -20.0
 _LEAST = -1.9  # what a margin counts at least: any candidate within the hard limits is better than one beyond
@@ -127,7 +132,10 @@ class Tried:
 
 @dataclass(frozen=True)
 class Trial:
-    """Everything that a candidate is tried with; goes to other processes as it is."""
+    """Everything that a candidate is tried with; goes to other processes as it is.
+
+    `envelope` has largest magnitudes by channel that somebody consented to: hard limits of the whole run.
+    """
 
     plan: Plan
     driven: Driven
@@ -136,6 +144,7 @@ class Trial:
     draws: tuple[Draw, ...]
     loops: SpeedLoops
     execute: CarryOut
+    envelope: Mapping[str, float] = field(default_factory=dict)
     _known: dict[int, Tried] = field(default_factory=dict, repr=False, compare=False)
 
     def controller(self, values: Mapping[str, float], name: str = "tuned") -> Controller:
@@ -266,6 +275,7 @@ class Trial:
         asked = [name for name, value in self.free.limits if value is not None and value is not False]
         kept = [one.limit for one in self.kept if one.group not in self.free.keep.may_worsen]
         asked += [device_limit(one.id) for one in self.device_checks]
+        asked += [f"{ENVELOPE_LIMIT}{channel}" for channel in self.envelope]
         if CRITERIA not in self.free.keep.may_worsen:
             kept += [margin_limit(criterion.id) for criterion in self.driven.criteria]
         return (*asked, *kept)
@@ -297,6 +307,9 @@ class Trial:
         if limits.motor_energy_j is not None:
             most = max(_motor_energy_j(found.recording, segment) for segment in driven)
             shares["motor_energy_j"] = (limits.motor_energy_j - most) / limits.motor_energy_j
+        for name, limit in self.envelope.items():
+            largest = float(np.max(np.abs(found.recording[name]), initial=0.0))
+            shares[f"{ENVELOPE_LIMIT}{name}"] = 1.0 - _ENVELOPE_ROOM - largest / limit
         return shares
 
 

@@ -143,8 +143,9 @@ class Stages:
         return found
 
     def search_on(self, model: Path) -> Search:
-        """The plan that accepts, predicted on a model."""
-        return search_for(self._settings.sequence, model, self._settings.bench)
+        """The plan that accepts, predicted on a model, within what was consented to."""
+        found = search_for(self._settings.sequence, model, self._settings.bench)
+        return found.within(self._settings.allowed.envelope)
 
     def tune(self, search: Search, number: int) -> Tuning:
         """Search on the model; an interrupt ends it, for nothing of it was measured."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +32,7 @@ from hil.core.files.toml_file import toml_text
 from hil.core.model import load_model
 from hil.engine import BenchFile, load_bench
 from hil.engine.prediction.batch_prediction import BatchPrediction
+from hil.engine.prediction.forecast import Envelope
 from reports import HTML, PDF
 from reports.origin import origin_of
 from reports.outputs.tuning import CONTROLLER, FREE, output_files, summary_of
@@ -54,6 +55,13 @@ class Search:
     trial: Trial
     inputs: tuple[Path, ...]
     facts: dict[str, Any]
+
+    def within(self, envelope: Envelope) -> Search:
+        """The same, of controllers alone whose runs stay within an envelope."""
+        execute = self.trial.execute
+        assert isinstance(execute, BatchPrediction)
+        execute = replace(execute, channels=execute.channels | envelope.largest.keys())
+        return replace(self, trial=replace(self.trial, execute=execute, envelope=envelope.largest))
 
 
 def load_search(request: SearchRequest) -> Search:

@@ -76,6 +76,8 @@ def tune_controller(
     """
     search = load_search(request.search)
     allowed = _allowed(request, search, feedback) if request.refine else None
+    if allowed is not None:
+        search = search.within(allowed.envelope)
     settings = RunSettings(
         None, request.operator, "", "", "", search.inputs, request.overwrite, feedback=feedback
     )

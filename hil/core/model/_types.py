@@ -142,5 +142,6 @@ def kind_of(kind: str, uses: Iterable[EffectUse]) -> str:
 
 
 def parameter_unit(name: str) -> str:
-    """Unit of a model parameter, for people."""
-    return PARAMETERS[name][0]
+    """Unit of a model parameter, or of an effect's number (id, what it speaks of, name), for people."""
+    id_, _, number = name.partition(".")
+    return EFFECTS[id_].parameter(number.rpartition(".")[2]).unit if number else PARAMETERS[name][0]

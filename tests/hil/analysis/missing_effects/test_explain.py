@@ -35,6 +35,18 @@ def test_dry_friction_is_named_from_any_base(model: Model) -> None:
     assert found.model.effects[0].id == "coulomb_friction"
 
 
+@pytest.mark.parametrize(("carried_nm", "hidden_nm"), [(0.7, 1.39), (1.39, 0.3)])
+def test_a_wrong_number_of_an_effect_that_the_base_carries_is_named(
+    carried_nm: float, hidden_nm: float
+) -> None:
+    model = base(0.54, 2.17).with_effects(EffectUse("coulomb_friction", {"torque_nm": carried_nm}))
+    found = _asked(model, 0.54, 2.17, hidden_nm)
+    assert [one.use.values.get("parameter") for one in found.effects] == ["coulomb_friction.torque_nm"]
+    assert found.effects[0].use.values["value"] == pytest.approx(hidden_nm, rel=0.01)
+    assert found.effects[0].confidence > 0.95
+    assert found.model.effects[0].values["torque_nm"] == pytest.approx(hidden_nm, rel=0.01)
+
+
 def test_gravity_beside_dry_friction_is_a_ripple_once_a_turn() -> None:
     found = _asked(base(1.6), 0.54, 1.0, 0.3, 4.0, torque_nm=6.0)
     names = {one.id: one.use.values for one in found.effects}

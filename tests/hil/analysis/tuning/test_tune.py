@@ -2,7 +2,9 @@
 
 import dataclasses
 import itertools
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from hil.analysis.tuning import Effort, Tuning, front_of, refuse_model, tune
@@ -148,3 +150,16 @@ def test_no_criterion_loses_margin_where_none_may():
     assert slower.feasible == (least >= 0)
     found = tune(trial, seed=1, effort=QUICK, processes=1)
     assert all(found.chosen.nominal.margins[name] >= own[name] for name in own)
+
+
+def test_what_somebody_consented_to_is_a_hard_limit_of_the_whole_run() -> None:
+    trial, channel = trial_of(), "motor_torque_ref_nm"
+    trial = replace(trial, execute=replace(trial.execute, channels=trial.execute.channels | {channel}))
+    run = trial.execute(MODEL, trial.start, 0.0, 0)
+    most_nm = float(np.max(np.abs(run.recording[channel])))
+    for allowed_nm, is_kept in ((1.02 * most_nm, True), (1.005 * most_nm, False)):  # noise needs some room
+        within = replace(trial, envelope={channel: allowed_nm})
+        assert f"envelope.{channel}" in within.limits
+        tried = within.tried({}, 0)
+        assert tried.limits[f"envelope.{channel}"] == pytest.approx(0.99 - most_nm / allowed_nm)
+        assert tried.feasible == is_kept
