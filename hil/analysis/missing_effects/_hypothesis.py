@@ -96,6 +96,11 @@ class Hypothesis:
         carried = {name: float(use.values[one.name]) for name, (use, one) in _carried(base).items()}
         return cls(base, {**base.parameters, **carried})
 
+    @property
+    def laws(self) -> tuple[tuple[float | str | None, ...], ...]:
+        """Which of the laws that they may have its effects have."""
+        return tuple(laws_of(use) for use in self.terms)
+
     def with_number(self, name: str, value: float) -> Hypothesis:
         """The same, one number of the base another one."""
         return replace(self, numbers={**self.numbers, name: value})
@@ -217,6 +222,11 @@ def _carried(base: Model) -> dict[str, tuple[EffectUse, Parameter]]:
 def label_of(use: EffectUse) -> str:
     """An effect's name, with the channel or parameter that it is about."""
     return EFFECTS[use.id].label(use.values)
+
+
+def laws_of(use: EffectUse) -> tuple[float | str | None, ...]:
+    """Numbers of an effect between which a diagnosis chooses."""
+    return tuple(use.values.get(one.name, one.default) for one in EFFECTS[use.id].parameters if one.choices)
 
 
 def is_linear(use: EffectUse) -> bool:

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.missing_effects._fit import Linearised, Point
-from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of
+from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of, laws_of
 from hil.analysis.missing_effects._orders import orders_of
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._projection import Projection
@@ -210,8 +210,11 @@ def promised_by(problem: Problem, at: Linearised, hypotheses: Sequence[Hypothesi
 
 
 def best_by_name(found: Sequence[Promise], each: int) -> list[list[Promise]]:
-    """The `each` most promising sizes of every name, names by their best one."""
-    names: dict[str, list[Promise]] = {}
+    """The `each` most promising sizes of every name and law, by their best one.
+
+    Laws that an effect may have are promised what only a fit can tell apart.
+    """
+    names: dict[tuple[str, tuple[float | str | None, ...]], list[Promise]] = {}
     for one in sorted(found, key=lambda one: -one.gain):
-        names.setdefault(one.label, []).append(one)
+        names.setdefault((one.label, laws_of(one.use)), []).append(one)
     return [sizes[:each] for sizes in names.values()]

@@ -214,12 +214,12 @@ def _best_of(
 
 
 def _most_promising(done: Candidates, begun: Sequence[Candidate]) -> list[tuple[float, Candidate]]:
-    """Of each set of names the start that may reach most, with that score: starts of a name are no rivals."""
-    found: dict[tuple[str, ...], tuple[float, Candidate]] = {}
+    """Of each set of names and laws the start that may reach most, with that score: starts are no rivals."""
+    found: dict[object, tuple[float, Candidate]] = {}
     for one in begun:
-        may_reach = done.may_reach(one)
-        if one.names not in found or may_reach > found[one.names][0]:
-            found[one.names] = may_reach, one
+        may_reach, key = done.may_reach(one), (one.names, one.point.hypothesis.laws)
+        if key not in found or may_reach > found[key][0]:
+            found[key] = may_reach, one
     return list(found.values())
 
 

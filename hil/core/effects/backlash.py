@@ -245,7 +245,7 @@ EFFECT = Effect(
             "of the flanks while they touch, wheel side",
             optional=True,
             typical=10.0,
-            opens=(10.0, 50.0),
+            opens=(2.0, 10.0, 50.0),
         ),
         Parameter(
             "restitution",
