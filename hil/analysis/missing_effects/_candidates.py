@@ -15,7 +15,7 @@ from hil.analysis.missing_effects._fit import (
     point_at,
     with_better_starts,
 )
-from hil.analysis.missing_effects._hypothesis import Hypothesis
+from hil.analysis.missing_effects._hypothesis import Hypothesis, bends
 from hil.analysis.missing_effects._odds import ALIKE, Candidate
 from hil.analysis.missing_effects._orders import count_of_orders
 from hil.analysis.missing_effects._phase import tracked
@@ -42,7 +42,6 @@ class Candidates:
     problem: Problem
     values: float = 2.0  # independent ones that the data hold, by the best hypothesis so far
     found: dict[tuple[str, ...], Candidate] = field(default_factory=dict)
-    straying: set[str] = field(default_factory=set)  # names that promise more where recorded speeds lead
 
     @property
     def best(self) -> Candidate:
@@ -183,8 +182,8 @@ class Candidates:
         return led
 
     def strays(self, hypothesis: Hypothesis) -> bool:
-        """Whether an effect may send motion astray: a play, or what promised little until it was led."""
-        return hypothesis.is_abrupt or not self.straying.isdisjoint(hypothesis.names)
+        """Whether an effect may send motion astray."""
+        return hypothesis.is_abrupt or (hypothesis.kind != "rigid" and any(map(bends, hypothesis.terms)))
 
     def is_astray(self, near: Candidate) -> bool:
         """Whether a candidate leaves so much that motion may go its own way."""

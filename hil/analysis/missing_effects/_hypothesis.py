@@ -241,6 +241,11 @@ def is_loss(use: EffectUse) -> bool:
     return law.follows is None and any(one is not None for one in (law.dry, law.loss, law.load))
 
 
+def bends(use: EffectUse) -> bool:
+    """Whether a law may send motion of shafts astray: neither linear, nor a loss, nor a ripple."""
+    return not (is_linear(use) or is_loss(use) or EFFECTS[use.id].law.follows)
+
+
 def _of_effect(index: int, use: EffectUse, parameter: Parameter) -> Coordinate:
     """A number of an effect; a gain is calibrated as numbers of a base are, or it may be anything."""
     effect, value = EFFECTS[use.id], float(use.values[parameter.name])

@@ -16,7 +16,7 @@ from hil.analysis.missing_effects._fit import (
     point_at,
     with_better_starts,
 )
-from hil.analysis.missing_effects._hypothesis import Hypothesis, is_linear, is_loss
+from hil.analysis.missing_effects._hypothesis import Hypothesis, bends, is_loss
 from hil.analysis.missing_effects._linear import structures
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains
 from hil.analysis.missing_effects._phase import errors_of
@@ -253,11 +253,9 @@ def _suggested(done: Candidates, best: Candidate) -> list[tuple[Hypothesis, floa
         return [*found, *beside]  # others promise less from where that is
     promised = promises(done.problem, linearised(done.problem, best.point))
     most = max((one.gain for one in promised), default=0.0)
-    bends = best.point.hypothesis.kind != "rigid" and done.is_astray(best)
-    if bends and most < HALF * done.problem.most_to_gain(best.point.errors):
-        led = promises(*_where_led(done, best), lambda use: not (is_linear(use) or is_loss(use)))
-        done.straying |= {one.label for one in led if one.gain > max(most, least)}
-        promised = [*promised, *led]
+    has_shafts = best.point.hypothesis.kind != "rigid"
+    if has_shafts and done.is_astray(best) and most < HALF * done.problem.most_to_gain(best.point.errors):
+        promised = [*promised, *promises(*_where_led(done, best), bends)]
     for one, *_ in best_by_name([one for one in promised if one.gain > least], 1):
         starts = (base.with_term(one.use) for base in (best.point.hypothesis, one.numbers))
         found.append((_likelier(done, best, *starts), one.gain))

@@ -8,7 +8,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import replace
 
 import numpy as np
@@ -279,7 +279,7 @@ def _named(
 ) -> Named:
     label = best.names[index]
     alike = rivals.get(label, ())
-    held = _held(label, candidates, weights, *alike)
+    held = float(np.min(_held({label, *alike}, candidates, weights)))
     names = [part for name in (label, *alike) for part in name.split(" + ")]
     test = " Or: ".join(dict.fromkeys(EFFECTS[name.split("(")[0]].shown_by for name in names))
     return Named(best.point.hypothesis.terms[index], held * share, errors, alike, test if alike else "")
@@ -331,8 +331,8 @@ def _alike(
     others = sorted({name for one in candidates for name in one.names} - beside)
     found: dict[str, tuple[str, ...]] = {}
     for name in best.names:
-        least = np.exp(-ALIKE) * _held(name, candidates, weights)
-        alike = tuple(one for one in others if _held(one, candidates, weights, but=name) > least)
+        least = np.exp(-ALIKE) * _held({name}, candidates, weights)
+        alike = tuple(one for one in others if np.all(_held({one}, candidates, weights, but=name) > least))
         if alike:
             found[name] = alike
     for index, use in enumerate(best.point.hypothesis.terms):
@@ -348,17 +348,14 @@ def _alike(
     return found
 
 
-def _held(name: str, candidates: Sequence[Candidate], weights: Array, *others: str, but: str = "") -> float:
-    """Weight of all candidates that have a name, or one of others, `but` those that have that one.
+def _held(names: Set[str], candidates: Sequence[Candidate], weights: Array, but: str = "") -> Array:
+    """Weight of all candidates that have one of names, `but` those that have that one, by kind (kinds,).
 
     Args:
-        weights: kinds x candidates; of each name the least kind counts.
+        weights: kinds x candidates.
     """
-    total, left = 0.0, np.array([but not in one.names for one in candidates])
-    for label in (name, *others):
-        has = left & [label in one.names for one in candidates]
-        total, left = total + float(np.min(np.sum(weights[:, has], axis=1))), left & ~has
-    return total
+    has = [but not in one.names and not names.isdisjoint(one.names) for one in candidates]
+    return np.asarray(np.sum(weights[:, has], axis=1))
 
 
 def _apart(problem: Problem, one: Point, other: Point) -> float:
