@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import resource
+import re
 import shutil
 import signal
 import subprocess
@@ -64,26 +64,35 @@ def _process(case: Case, work: Path, folder: Path) -> tuple[int | None, str, str
         began_s = time.monotonic()
         if case.interruption:
             _interrupt(process, case.interruption, work)
-        code, usage = _waited(process)
+        code, megabytes = _waited(process)
         seconds = time.monotonic() - began_s
-    return code, _text(folder / "out"), _text(folder / "err"), seconds, usage.ru_maxrss / 1e3
+    return code, _text(folder / "out"), _text(folder / "err"), seconds, megabytes
 
 
-def _waited(process: subprocess.Popen[bytes]) -> tuple[int | None, resource.struct_rusage]:
-    """Exit code and what the process used; no code of one that had to be ended after the time limit."""
-    if process.returncode is not None:  # a signal found it ended
-        return process.returncode, resource.getrusage(resource.RUSAGE_CHILDREN)
-    until_s = time.monotonic() + LIMIT_S
+def _waited(process: subprocess.Popen[bytes]) -> tuple[int | None, float]:
+    """Exit code and the largest memory in MB; no code of one that had to be ended after the time limit.
+
+    The memory is read while it runs: what `wait4` says of a process counts in what its parent had.
+    """
+    until_s, megabytes = time.monotonic() + LIMIT_S, 0.0
     hung = False
-    while True:
-        ended, status, usage = os.wait4(process.pid, os.WNOHANG)
-        if ended:
-            process.returncode = os.waitstatus_to_exitcode(status)
-            return None if hung else process.returncode, usage
+    while process.poll() is None:
+        megabytes = max(megabytes, _megabytes(process.pid))
         if not hung and time.monotonic() > until_s:
             hung = True
             os.killpg(process.pid, signal.SIGKILL)  # its own session: started here
         time.sleep(_POLL_S)
+    return None if hung else process.returncode, megabytes
+
+
+def _megabytes(pid: int) -> float:
+    """The most that a process has had so far; 0 of one that has ended."""
+    try:
+        status = Path(f"/proc/{pid}/status").read_text()
+    except OSError:
+        return 0.0
+    found = re.search(r"VmHWM:\s+(\d+) kB", status)
+    return float(found[1]) / 1e3 if found else 0.0
 
 
 def _interrupt(process: subprocess.Popen[bytes], what: Interruption, work: Path) -> None:

@@ -6,6 +6,7 @@ folder of the test stand for the built-in plans.
 
 from __future__ import annotations
 
+import base64
 import shutil
 import signal
 import subprocess
@@ -13,13 +14,16 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 import typer
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 from cryptography.hazmat.primitives.serialization import Encoding, NoEncryption, PrivateFormat, PublicFormat
+from nptdms import ChannelObject, TdmsWriter
 
 from hil.cli._app import app_of
 from hil.cli._commands import command_names, taken_apart
+from hil.core.recording import read_recording
 from tests.docs.documented import ROOT, Documented, blocks_of, documented
 from tests.docs.test_own_plan import PLANS as PLANS_OF_PAGE
 from tests.hil.cli.test_commands import HIL, hil
@@ -62,6 +66,7 @@ CODES = {
     ("report",): (0, 1),  # of a run that crashed: it never passes
     ("bench monitor",): (0, 2, 130),  # a simulated bench has nothing to monitor
     ("bench jog",): (0, 1),
+    ("serve",): (0, 3),  # nobody takes the notices of a test
     ("autotune",): (0, 1),
     ("tune",): (0, 1),  # the short plan's runs would leave the envelope of its own controller
 }
@@ -122,6 +127,8 @@ def stage(files: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     shutil.copytree(files, folder)
     monkeypatch.chdir(folder)
     monkeypatch.setenv("BENCH_SIGN_IN_SECRET", "of a client")
+    monkeypatch.setenv("BENCH_HOOK_SECRET", f"whsec_{base64.b64encode(bytes(32)).decode()}")
+    monkeypatch.setenv("BENCH_MAIL_PASSWORD", "of a mail server")
     return folder
 
 
@@ -163,9 +170,29 @@ def prepare(page: str, stage: Path) -> None:
     if page.endswith("diagnose.md"):
         Path("why").mkdir()
         shutil.copy("identification", "why/separate_running_resistance.yaml")
+    if page.endswith("notices.md"):
+        shutil.copy("bench.toml", "rig.toml")
+        Path("notices.toml").write_text(blocks_of(page, "toml")[0])
+    if page.endswith("other-tools.md"):
+        Path("columns.toml").write_text(blocks_of(page, "toml")[0])
+        _write_as_other_tools("chirp_low.csv")
     if page.endswith("own-plan.md"):
         shutil.copy("plan.yaml", "tip-in.yaml")
         Path("plan.yaml").write_text(PLANS_OF_PAGE[1])
+
+
+def _write_as_other_tools(csv: str) -> None:
+    """A recording as LabVIEW and a TDMS writer have it, under other names; speed in rpm, inverted."""
+    recording = read_recording(Path(csv))
+    time_s, torque = recording.time_s, recording["motor_torque_ref_nm"]
+    rpm = recording["motor_speed_rad_s"] * -60.0 / (2.0 * np.pi)
+    head = "LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\nX_Value\tT_req\tn_EM\n"
+    rows = zip(time_s, torque, rpm, strict=True)
+    body = "".join(f"{t:.6f}\t{nm:.9g}\t{n:.9g}\n" for t, nm, n in rows)
+    Path("drive.lvm").write_text(head + body)
+    with TdmsWriter("drive.tdms") as writer:
+        columns = {"t": 1e3 * time_s, "T_req": torque, "n_EM": rpm}
+        writer.write_segment([ChannelObject("drive", name, values) for name, values in columns.items()])
 
 
 def _make_key(path: Path) -> None:
@@ -197,6 +224,8 @@ def test_the_commands_of_a_page_work_one_after_the_other(page, stage, served):
             served.append(_served(line.arguments))
         elif name == "bench monitor":
             assert _interrupted(line.arguments) in CODES["bench monitor",]
+        elif name == "serve" and "--test-notices" in arguments:
+            _execute(name, arguments)
         elif name == "serve" and "--add-token" not in arguments:
             assert _interrupted((*line.arguments, "--port", "0")) == 130
         elif name == "bench agent":

@@ -5,6 +5,7 @@ import subprocess
 
 import pytest
 
+from hil.core.model import load_model
 from tests.hil.cli.test_commands import HIL
 from tests.hil.cli.test_sim_bench import serving
 
@@ -53,8 +54,9 @@ def test_what_a_bench_in_another_process_hides_is_named(tmp_path):
         tmp_path, "dead_time=0.002", tmp_path / "chirps.yaml", ["1", "0.4", "0.2", "0.2"]
     )
     effect = the_effect_that_is_named(tmp_path, recording)
-    assert effect["id"] == "dead_time"
-    assert effect["parameters"]["extra_delay_s"] == pytest.approx(0.002, rel=0.03)
+    assert effect["parameters"]["parameter"] == "torque_delay"  # of the base: no effect of its own
+    own_s = load_model(MODEL).parameters["torque_delay"]
+    assert effect["parameters"]["value"] - own_s == pytest.approx(0.002, rel=0.03)
 
 
 @pytest.mark.hunt  # minutes of searching: the loop itself is in the slow set, with dead time
