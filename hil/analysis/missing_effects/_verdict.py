@@ -279,7 +279,7 @@ def _named(
 ) -> Named:
     label = best.names[index]
     alike = rivals.get(label, ())
-    held = float(np.min(_held({label, *alike}, candidates, weights)))
+    held = _held({label, *alike}, candidates, weights)
     names = [part for name in (label, *alike) for part in name.split(" + ")]
     test = " Or: ".join(dict.fromkeys(EFFECTS[name.split("(")[0]].shown_by for name in names))
     return Named(best.point.hypothesis.terms[index], held * share, errors, alike, test if alike else "")
@@ -332,7 +332,7 @@ def _alike(
     found: dict[str, tuple[str, ...]] = {}
     for name in best.names:
         least = np.exp(-ALIKE) * _held({name}, candidates, weights)
-        alike = tuple(one for one in others if np.all(_held({one}, candidates, weights, but=name) > least))
+        alike = tuple(one for one in others if _held({one}, candidates, weights, but=name) > least)
         if alike:
             found[name] = alike
     for index, use in enumerate(best.point.hypothesis.terms):
@@ -348,14 +348,14 @@ def _alike(
     return found
 
 
-def _held(names: Set[str], candidates: Sequence[Candidate], weights: Array, but: str = "") -> Array:
-    """Weight of all candidates that have one of names, `but` those that have that one, by kind (kinds,).
+def _held(names: Set[str], candidates: Sequence[Candidate], weights: Array, but: str = "") -> float:
+    """Weight of all candidates that have one of names, `but` those that have that one.
 
     Args:
-        weights: kinds x candidates.
+        weights: kinds x candidates; the least kind counts.
     """
     has = [but not in one.names and not names.isdisjoint(one.names) for one in candidates]
-    return np.asarray(np.sum(weights[:, has], axis=1))
+    return float(np.min(np.sum(weights[:, has], axis=1)))
 
 
 def _apart(problem: Problem, one: Point, other: Point) -> float:
