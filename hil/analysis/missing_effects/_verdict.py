@@ -50,7 +50,7 @@ Array = npt.NDArray[np.float64]
 
 _LATE = {"actuator_lag": ("sensor_lag", "time_constant_s"), "dead_time": ("channel_skew", "delay_s")}
 _ALONE = 2  # single names that may, near noise
-_LED = 4  # candidates, whose odds are looked at where speeds lead
+_LED = 6  # candidates, whose odds are looked at where speeds lead
 _RIVALS = 3  # names that may take the place of another
 _SHOWN = 5  # alternatives
 _DRAWN = 40  # models, by which a figure of the new model is known

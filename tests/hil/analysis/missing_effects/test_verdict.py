@@ -8,7 +8,7 @@ from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._fit import linearised, point_at
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._share import Judged, _remains
-from hil.analysis.missing_effects._verdict import _alike, _from_far
+from hil.analysis.missing_effects._verdict import _alike, _from_far, _held
 from hil.core.model import EffectUse, Model
 from tests.hil.analysis.missing_effects.chain import RIGID, driven, problem_about
 from tests.hil.analysis.missing_effects.two_masses import base, braked
@@ -36,6 +36,17 @@ def test_what_a_law_gets_wrong_elsewhere_takes_nothing_from_an_effect_of_one_cha
     assert _remains(of, before, after, wrong) < 0.01
     wrong[1] = 500.0 * problem.noise[1] ** 2
     assert 0.4 < _remains(of, before, after, wrong) < 0.6
+
+
+def test_a_class_holds_what_the_least_of_both_ways_gives_all_of_it() -> None:
+    """One way prefers one name, the other the other one: both say one of the two."""
+    model = base()
+    done = Candidates(problem_about(model, braked(0.0, 0.7)))
+    sets = [Hypothesis(model, dict(model.parameters)).with_term(use) for use in (_ROLLING, _VISCOUS, _DRY)]
+    candidates = [done.judged(point_at(done.problem, one)) for one in sets]
+    weights = np.array([[0.9, 0.08, 0.02], [0.2, 0.75, 0.05]])
+    assert np.isclose(_held({"running_resistance"}, candidates, weights), 0.2)
+    assert np.isclose(_held({"running_resistance", "load_viscous_drag"}, candidates, weights), 0.95)
 
 
 def test_names_are_alike_where_one_is_in_the_place_of_the_other_at_odds_below_twenty() -> None:
