@@ -72,17 +72,25 @@ def _process(case: Case, work: Path, folder: Path) -> tuple[int | None, str, str
 def _waited(process: subprocess.Popen[bytes]) -> tuple[int | None, float]:
     """Exit code and the largest memory in MB; no code of one that had to be ended after the time limit.
 
-    The memory is read while it runs: what `wait4` says of a process counts in what its parent had.
+    What `wait4` says of a process counts in what its parent had. Where that is more, the memory that was read
+    while it ran counts.
     """
-    until_s, megabytes = time.monotonic() + LIMIT_S, 0.0
+    if process.returncode is not None:  # a signal found it ended
+        return process.returncode, 0.0
+    until_s, read = time.monotonic() + LIMIT_S, 0.0
     hung = False
-    while process.poll() is None:
-        megabytes = max(megabytes, _megabytes(process.pid))
+    while True:
+        read = max(read, _megabytes(process.pid))
+        ended, status, usage = os.wait4(process.pid, os.WNOHANG)
+        if ended:
+            process.returncode = os.waitstatus_to_exitcode(status)
+            whole = usage.ru_maxrss / 1e3
+            megabytes = whole if whole > _megabytes(os.getpid()) else read
+            return None if hung else process.returncode, megabytes
         if not hung and time.monotonic() > until_s:
             hung = True
             os.killpg(process.pid, signal.SIGKILL)  # its own session: started here
         time.sleep(_POLL_S)
-    return None if hung else process.returncode, megabytes
 
 
 def _megabytes(pid: int) -> float:

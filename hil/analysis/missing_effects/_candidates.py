@@ -9,6 +9,7 @@ import numpy as np
 
 from hil.analysis.missing_effects._fit import (
     ROUNDS,
+    Linearised,
     Point,
     fit,
     linearised,
@@ -104,8 +105,18 @@ class Candidates:
 
     def promised(self, candidate: Candidate) -> Explained:
         """What its numbers may still bring a candidate, weighed by what it leaves."""
+        return Projection(*self.as_it_is(candidate)).alone
+
+    def as_it_is(self, candidate: Candidate) -> tuple[Problem, Linearised]:
+        """The problem weighed by what a candidate leaves, and that point."""
         problem = self.weighed_as(candidate)
-        return Projection(problem, linearised(problem, candidate.point)).alone
+        return problem, linearised(problem, candidate.point)
+
+    def where_led(self, candidate: Candidate) -> tuple[Problem, Linearised]:
+        """The same where recorded speeds lead."""
+        led = self.led(candidate.point)
+        problem = self.led_problem.weighed_as(led.errors)
+        return problem, linearised(problem, led)
 
     def may_reach(self, candidate: Candidate, promised: Explained | None = None) -> float:
         """The score to which its numbers may still bring a candidate, by what they promise."""

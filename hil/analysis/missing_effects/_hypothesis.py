@@ -12,10 +12,11 @@ import numpy.typing as npt
 from hil.core.chain import Chain
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS, Parameter
-from hil.core.model import EffectUse, Model, kind_of
+from hil.core.model import EffectUse, Model, kind_of, parameter_of_effect
 from hil.plant import chain_numbers, pack, sensor_of
 
 Array = npt.NDArray[np.float64]
+Laws = tuple[float | str, ...]
 
 TOLERANCE = 0.02
 """A number of a base is right to that share, where the model file states none, or it may be anything."""
@@ -93,11 +94,11 @@ class Hypothesis:
     @classmethod
     def alone(cls, base: Model) -> Hypothesis:
         """A base as it came: all its numbers, those of the effects that it carries included."""
-        carried = {name: float(use.values[one.name]) for name, (use, one) in _carried(base).items()}
+        carried = {name: float(use.values[one.name]) for name, (use, one) in _numbers_carried(base).items()}
         return cls(base, {**base.parameters, **carried})
 
     @property
-    def laws(self) -> tuple[tuple[float | str | None, ...], ...]:
+    def laws(self) -> tuple[Laws, ...]:
         """Which of the laws that they may have its effects have."""
         return tuple(laws_of(use) for use in self.terms)
 
@@ -142,16 +143,14 @@ class Hypothesis:
     def model(self) -> Model:
         """The model that it is, to simulate or to write."""
         parameters = {name: self.numbers[name] for name in self.base.parameters}
-        effects = (*self._carried(), *self.terms)
+        effects = (*map(self._as_now, self.base.effects), *self.terms)
         return replace(self.base, parameters=parameters, effects=effects, meta={})
 
-    def _carried(self) -> list[EffectUse]:
-        """Effects of the base, their numbers as they are now."""
-        now: dict[int, dict[str, float | str]] = {}
-        for name, (use, one) in _carried(self.base).items():
-            if name in self.numbers:
-                now.setdefault(id(use), dict(use.values))[one.name] = self.numbers[name]
-        return [EffectUse(use.id, now.get(id(use), use.values)) for use in self.base.effects]
+    def _as_now(self, use: EffectUse) -> EffectUse:
+        """An effect of the base with its numbers as they are now."""
+        names = {one: parameter_of_effect(use, one) for one in use.values}
+        now = {one: self.numbers[name] for one, name in names.items() if name in self.numbers}
+        return EffectUse(use.id, {**use.values, **now})
 
     def chain(self) -> Chain:
         """Linear numbers of the model that it is."""
@@ -169,10 +168,9 @@ class Hypothesis:
     def _number(self, name: str, scales: Mapping[str, float]) -> Coordinate:
         value = float(self.numbers[name])
         if name not in self.base.parameters:
-            use, parameter = _carried(self.base)[name]
-            base = float(use.values[name.rpartition(".")[2]]) or None
+            use, parameter = _numbers_carried(self.base)[name]
             one = _of_effect(-1, EffectUse(use.id, {**use.values, parameter.name: value}), parameter)
-            return replace(one, name=name, base=base)
+            return replace(one, name=name, base=float(use.values[parameter.name]))
         base = float(self.base.parameters[name])
         if name in scales:  # may be zero
             if name != "torque_delay":
@@ -203,7 +201,7 @@ class Hypothesis:
         return pack(model), np.stack([sensor_of(model, channel) for channel in OUTPUTS])
 
 
-def _carried(base: Model) -> dict[str, tuple[EffectUse, Parameter]]:
+def _numbers_carried(base: Model) -> dict[str, tuple[EffectUse, Parameter]]:
     """Numbers of the effects of a base that a fit may move, by name: `coulomb_friction.torque_nm`.
 
     Of what follows an angle only the size: order and phase are those of the angles that it was found with.
@@ -211,11 +209,10 @@ def _carried(base: Model) -> dict[str, tuple[EffectUse, Parameter]]:
     found = {}
     for use in base.effects:
         effect = EFFECTS[use.id]
-        about = [value for value in use.values.values() if isinstance(value, str)]
         for one in effect.parameters:
             acts = one.name in effect.acting() or not effect.law.follows
             if one.fitted and acts and use.values.get(one.name, one.default) != one.default:
-                found[".".join([use.id, *about, one.name])] = use, one
+                found[parameter_of_effect(use, one.name)] = use, one
     return found
 
 
@@ -224,7 +221,7 @@ def label_of(use: EffectUse) -> str:
     return EFFECTS[use.id].label(use.values)
 
 
-def laws_of(use: EffectUse) -> tuple[float | str | None, ...]:
+def laws_of(use: EffectUse) -> Laws:
     """Numbers of an effect between which a diagnosis chooses."""
     return tuple(use.values.get(one.name, one.default) for one in EFFECTS[use.id].parameters if one.choices)
 

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.missing_effects._fit import Linearised, Point
-from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of, laws_of
+from hil.analysis.missing_effects._hypothesis import Hypothesis, Laws, label_of, laws_of
 from hil.analysis.missing_effects._orders import orders_of
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._projection import Projection
@@ -209,12 +209,12 @@ def promised_by(problem: Problem, at: Linearised, hypotheses: Sequence[Hypothesi
     return [project.explained(of, slice(i, i + 1), _STRETCHED).gain for i in range(len(hypotheses))]
 
 
-def best_by_name(found: Sequence[Promise], each: int) -> list[list[Promise]]:
-    """The `each` most promising sizes of every name and law, by their best one.
+def best_by_name(found: Sequence[Promise]) -> list[Promise]:
+    """The most promising size of every name and law, the best first.
 
     Laws that an effect may have are promised what only a fit can tell apart.
     """
-    names: dict[tuple[str, tuple[float | str | None, ...]], list[Promise]] = {}
+    best: dict[tuple[str, Laws], Promise] = {}
     for one in sorted(found, key=lambda one: -one.gain):
-        names.setdefault((one.label, laws_of(one.use)), []).append(one)
-    return [sizes[:each] for sizes in names.values()]
+        best.setdefault((one.label, laws_of(one.use)), one)
+    return list(best.values())

@@ -32,7 +32,7 @@ from hil.core.model import EffectUse
 
 HALF = 0.5  # of what stays without it a name must take off
 _TRIED = 8  # hypotheses that a step begins with, the most promising ones; half of them go on each time
-_RIVALS = 2  # of a step are fitted to their end
+_LOOK = 2  # rounds of a fit, after which it is known whether it pays
 _BESIDE = 0.3  # of an effect's first number: where an optional one in the same unit begins
 _MOST_NAMES = 4
 _NEAR_WHOLE, _SURE = 0.05, 3.0  # of an order; standard errors
@@ -167,7 +167,7 @@ def _among_losses(done: Candidates, grown: Candidate, show: Callable[[str], None
     found = promises(problem, linearised(problem, near.point), is_loss)
     brought = HALF * (grown.log_likelihood - near.log_likelihood)
     best = grown
-    for promise, *_ in best_by_name(found, 1):
+    for promise in best_by_name(found):
         if promise.label not in grown.names and promise.gain > brought:
             show(f"fitting {promise.label}")
             instead = done.fitted(fewer.with_term(promise.use), near)
@@ -179,7 +179,7 @@ def _among_losses(done: Candidates, grown: Candidate, show: Callable[[str], None
         other, opened = one.point.hypothesis.terms[0], one.point.hypothesis.opened[0]
         if is_loss(other):
             show(f"fitting {' + '.join([*best.names, *one.names])}")
-            pairs.append(done.fitted(best.point.hypothesis.with_term(other, opened), best, _RIVALS))
+            pairs.append(done.fitted(best.point.hypothesis.with_term(other, opened), best, _LOOK))
     ended = [done.fitted(one.point.hypothesis, one) for one in _best_of_each_name(done, pairs)[:1]]
     return max((best, *ended), key=done.score)
 
@@ -255,27 +255,14 @@ def _suggested(done: Candidates, best: Candidate) -> list[tuple[Hypothesis, floa
     most = max((one.gain for one in promised), default=0.0)
     has_shafts = best.point.hypothesis.kind != "rigid"
     if has_shafts and done.is_astray(best) and most < HALF * done.problem.most_to_gain(best.point.errors):
-        promised = [*promised, *promises(*_where_led(done, best), bends)]
-    for one, *_ in best_by_name([one for one in promised if one.gain > least], 1):
+        promised = [*promised, *promises(*done.where_led(best), bends)]
+    for one in best_by_name([one for one in promised if one.gain > least]):
         starts = (base.with_term(one.use) for base in (best.point.hypothesis, one.numbers))
         found.append((_likelier(done, best, *starts), one.gain))
         elsewhere = _as_elsewhere(done, best, one.label)
         if elsewhere:
             found.append((_likelier(done, best, *elsewhere), one.gain))
     return [*found, *beside]
-
-
-def _where_led(done: Candidates, best: Candidate) -> tuple[Problem, Linearised]:
-    """The problem where recorded speeds lead, weighed by what a hypothesis leaves there, and that point."""
-    led = done.led(best.point)
-    problem = done.led_problem.weighed_as(led.errors)
-    return problem, linearised(problem, led)
-
-
-def _as_it_is(done: Candidates, best: Candidate) -> tuple[Problem, Linearised]:
-    """The problem weighed by what a hypothesis leaves, and that point."""
-    problem = done.weighed_as(best)
-    return problem, linearised(problem, best.point)
 
 
 def _as_elsewhere(done: Candidates, best: Candidate, label: str) -> list[Hypothesis]:
@@ -307,12 +294,11 @@ def _beside_the_base(done: Candidates, best: Candidate, least: float) -> list[tu
     behind = done.score(best) - done.score(near)
     if behind < least:
         return []
-    problem = done.weighed_as(near)
-    promised = promises(problem, linearised(problem, near.point), _is_no_ripple)
+    promised = promises(*done.as_it_is(near), _is_no_ripple)
     most = HALF * max([behind, *(one.gain for one in promised)])
     promised = [one for one in promised if one.gain > most]
     found = []
-    for one, *_ in best_by_name(promised, 1):
+    for one in best_by_name(promised):
         held = done.fitted(base.with_term(one.use), near, held=frozenset(base.numbers))
         ahead = done.score(held) + done.promised(held).gain - done.score(best)
         if max(ahead, one.gain - behind) > least:
@@ -348,7 +334,7 @@ def _opened_of(done: Candidates, best: Candidate, index: int, show: Callable[[st
             continue
         if asked is None or asked[0] is not best:
             strays = done.strays(best.point.hypothesis)
-            asked = best, *(_where_led(done, best) if strays else _as_it_is(done, best))
+            asked = best, *(done.where_led(best) if strays else done.as_it_is(best))
         gains = promised_by(*asked[1:], wider)
         if max(gains) <= done.cost_of_a_number(best):
             continue
@@ -356,7 +342,7 @@ def _opened_of(done: Candidates, best: Candidate, index: int, show: Callable[[st
         begins = wider[int(np.argmax(gains))]
         if 0.0 in parameter.opens:  # where it does nothing: a fit goes on from what is settled
             begins = begins.with_values(index, {parameter.name: 0.0}, begins.opened[index])
-        tried = done.fitted(begins, best, _RIVALS)
+        tried = done.fitted(begins, best, _LOOK)
         if done.score(tried) > done.score(best):  # the next one is judged by what this one leaves
             best = done.fitted(tried.point.hypothesis, tried)
     return best

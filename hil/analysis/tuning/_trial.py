@@ -275,7 +275,7 @@ class Trial:
         asked = [name for name, value in self.free.limits if value is not None and value is not False]
         kept = [one.limit for one in self.kept if one.group not in self.free.keep.may_worsen]
         asked += [device_limit(one.id) for one in self.device_checks]
-        asked += [f"{ENVELOPE_LIMIT}{channel}" for channel in self.envelope]
+        asked += [envelope_limit(channel) for channel in self.envelope]
         if CRITERIA not in self.free.keep.may_worsen:
             kept += [margin_limit(criterion.id) for criterion in self.driven.criteria]
         return (*asked, *kept)
@@ -309,13 +309,18 @@ class Trial:
             shares["motor_energy_j"] = (limits.motor_energy_j - most) / limits.motor_energy_j
         for name, limit in self.envelope.items():
             largest = float(np.max(np.abs(found.recording[name]), initial=0.0))
-            shares[f"{ENVELOPE_LIMIT}{name}"] = 1.0 - _ENVELOPE_ROOM - largest / limit
+            shares[envelope_limit(name)] = 1.0 - _ENVELOPE_ROOM - largest / limit
         return shares
 
 
 def device_limit(check: str) -> str:
     """Name of a device check among hard limits."""
     return f"{DEVICE_LIMIT}{check}"
+
+
+def envelope_limit(channel: str) -> str:
+    """Name of a channel's largest magnitude among hard limits."""
+    return f"{ENVELOPE_LIMIT}{channel}"
 
 
 def _inside(recording: Recording, segment: Segment) -> slice:

@@ -24,6 +24,7 @@ from hil.core.model._types import (
     TransferFunction,
     kind_of,
     parameter_names,
+    parameter_of_effect,
     parameter_unit,
 )
 
@@ -99,6 +100,7 @@ __all__ = [
     "model_from_dict",
     "model_to_toml",
     "parameter_names",
+    "parameter_of_effect",
     "parameter_unit",
     "refuse_without_vehicle",
     "save_model",

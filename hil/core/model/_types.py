@@ -141,7 +141,13 @@ def kind_of(kind: str, uses: Iterable[EffectUse]) -> str:
     return kind
 
 
+def parameter_of_effect(use: EffectUse, number: str) -> str:
+    """Name of an effect's number among a model's parameters: its id, what it speaks of, the number."""
+    about = [value for value in use.values.values() if isinstance(value, str)]
+    return ".".join([use.id, *about, number])
+
+
 def parameter_unit(name: str) -> str:
-    """Unit of a model parameter, or of an effect's number (id, what it speaks of, name), for people."""
+    """Unit of a model parameter, or of an effect's number (`parameter_of_effect`), for people."""
     id_, _, number = name.partition(".")
     return EFFECTS[id_].parameter(number.rpartition(".")[2]).unit if number else PARAMETERS[name][0]

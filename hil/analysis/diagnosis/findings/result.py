@@ -15,7 +15,7 @@ from hil.analysis.missing_effects import Curve
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.files.toml_file import FORMAT
-from hil.core.model import EffectUse, Model
+from hil.core.model import EffectUse, Model, parameter_of_effect
 
 Array = npt.NDArray[np.float64]
 Verdict = Literal["named", "none", "unknown"]
@@ -47,11 +47,9 @@ def as_corrections(small: Sequence[NamedEffect]) -> dict[str, tuple[float, float
     """
     found = {}
     for effect in small:
-        about = [str(v) for v in effect.use.values.values() if isinstance(v, str)]
         for name, error in effect.standard_error.items():
             neutral = EFFECTS[effect.use.id].off if name in EFFECTS[effect.use.id].acting() else 0.0
-            key = ".".join([effect.use.id, *about, name])
-            found[key] = (neutral, float(effect.use.values[name]), error)
+            found[parameter_of_effect(effect.use, name)] = (neutral, float(effect.use.values[name]), error)
     return found
 
 

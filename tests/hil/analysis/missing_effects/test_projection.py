@@ -27,7 +27,7 @@ def test_a_promise_is_what_a_fit_reaches(hidden: EffectUse) -> None:
     alone = done.fitted(Hypothesis(done.problem.model, dict(done.problem.model.parameters)), None)
     done.go_on_from(alone)
     problem = done.weighed_as(alone)
-    (first, *_), *_ = best_by_name(promises(problem, linearised(problem, alone.point)), 1)
+    first, *_ = best_by_name(promises(problem, linearised(problem, alone.point)))
     reached = done.fitted(alone.point.hypothesis.with_term(first.use), alone)
     assert first.use.id == hidden.id
     assert first.gain == pytest.approx(reached.log_likelihood - alone.log_likelihood, rel=0.3)
