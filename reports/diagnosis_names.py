@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from hil.analysis.diagnosis import Diagnosis, NamedEffect
+from hil.core.channels import CHANNELS
 from hil.core.effects import EFFECTS
 from hil.core.model import parameter_unit
 from reports import labels
@@ -13,24 +14,30 @@ from reports.parts import Table
 
 
 def effects_text(found: Diagnosis) -> str:
-    """What each named effect is."""
+    """What each named effect is, and where it is seen."""
     if not found.effects:
         return "None."
-    effects = [EFFECTS[id_] for id_ in dict.fromkeys(e.use.id for e in found.effects)]
-    return " ".join(f"{e.title}: {e.summary} Known by: {_lowered(e.signature)}" for e in effects)
+    known = dict.fromkeys(e.use.id for e in found.effects)
+    seen = [f"{_upper(names_of(e))} is seen in {_place(e)}." for e in found.effects]
+    laws = [
+        f"{e.title}: {e.summary} Known by: {_lowered(e.signature)}" for e in map(EFFECTS.__getitem__, known)
+    ]
+    return " ".join((*laws, *seen))
 
 
 def names_of(effect: NamedEffect) -> str:
     """An effect's title, and those of the names that the data cannot tell from it."""
     others = (" and ".join(_titled(part) for part in name.split(" + ")) for name in effect.alike)
-    return " or ".join((EFFECTS[effect.use.id].title.lower(), *others))
+    return " or ".join((_titled(EFFECTS[effect.use.id].label(effect.use.values)), *others))
 
 
 def _titled(label: str) -> str:
-    """`sensor_lag(motor_speed_rad_s)` in words."""
-    id_, _, channel = label.rstrip(")").partition("(")
+    """`sensor_lag(motor_speed_rad_s)` or `parameter_mismatch(gear_ratio)` in words."""
+    id_, _, about = label.rstrip(")").partition("(")
     title = EFFECTS[id_].title.lower()
-    return f"{title} of {with_titles(channel)}" if channel else title
+    if not about:
+        return title
+    return f"{title} of {with_titles(about) if about in CHANNELS else parameter_title(about)}"
 
 
 def _lowered(sentence: str) -> str:
@@ -38,26 +45,25 @@ def _lowered(sentence: str) -> str:
 
 
 def effects_table(found: Diagnosis) -> Table:
-    """Numbers, errors, confidence and place of each named effect."""
+    """Numbers, errors and confidence of each named effect; what is in its name stands there."""
     rows = []
     for e in found.effects:
         units = {p.name: p.unit for p in EFFECTS[e.use.id].parameters}
         if "parameter" in e.use.values:
             units["value"] = parameter_unit(str(e.use.values["parameter"]))
-        for index, (name, value) in enumerate(e.use.values.items()):
-            shown = value if isinstance(value, str) else labels.quantity(value, units.get(name, ""))
+        numbers = [(name, value) for name, value in e.use.values.items() if not isinstance(value, str)]
+        for index, (name, value) in enumerate(numbers):
             error = e.standard_error.get(name)
             rows.append(
                 (
                     _upper(names_of(e)) if index == 0 else "",
                     parameter_title(name),
-                    shown,
+                    labels.quantity(value, units.get(name, "")),
                     labels.number(error, significant=2) if error is not None else "",
                     labels.chance(e.confidence) if index == 0 else "",
-                    _place(e) if index == 0 else "",
                 )
             )
-    return Table(("effect", "parameter", "value", "standard error", "confidence", "where"), tuple(rows), 2, 5)
+    return Table(("effect", "parameter", "value", "standard error", "confidence"), tuple(rows), 2)
 
 
 def _upper(sentence: str) -> str:

@@ -169,6 +169,8 @@ class Candidates:
             problem = self.weighed_as(after)
         if rounds >= ROUNDS and hypothesis.kind == "rigid" and "torque_delay" not in held:
             best = self._within_a_sample(best)
+        if rounds >= ROUNDS:
+            best = self._with_less(best)
         key = tuple(sorted(best.names))
         self.found[key] = max(self.found.get(key, best), best, key=self.score)
         return best
@@ -230,6 +232,18 @@ class Candidates:
         settled = fit(self.weighed_as(likeliest), likeliest.point, frozenset({"torque_delay"}))
         return max(best, likeliest, self.judged(settled), key=self.score)
 
+    def _with_less(self, best: Candidate) -> Candidate:
+        """Without a number of an effect that acts by several, where that one does next to nothing."""
+        for index, use in enumerate(best.point.hypothesis.terms):
+            acting = [one for one in EFFECTS[use.id].acting() if not EFFECTS[use.id].parameter(one).optional]
+            for name in acting if len(acting) > 1 else ():
+                opened = best.point.hypothesis.opened[index]
+                less = best.point.hypothesis.with_values(index, {name: 0.0}, opened)
+                point = point_at(self.problem, less, best.point.starts)
+                held = self.judged(fit(self.weighed_as(best), point, frozenset({name})))
+                best = max(best, held, key=self.score)
+        return best
+
     def _begun(self, hypothesis: Hypothesis, near: Candidate | None) -> Point:
         """A hypothesis as it is, from starts of another; as measured where it sticks and these may be off."""
         if near is None:
@@ -253,4 +267,5 @@ class Candidates:
         windows = point.powers(self.problem).log_likelihood(self.problem.noise)
         sides = [side for use in hypothesis.terms if (side := EFFECTS[use.id].law.follows)]
         places = sum(math.log(max(count_of_orders(self.problem, side), 1.0)) for side in sides)
-        return Candidate(point, windows, len(coordinates), known, prior, places)
+        free = sum(not one.is_idle for one in coordinates)
+        return Candidate(point, windows, free, known, prior, places)

@@ -130,10 +130,10 @@ def fit(
     may send it, no slope would lead it back.
 
     Args:
-        held: numbers of the base that stay what they are.
+        held: numbers that stay what they are.
     """
     hypothesis = point.hypothesis
-    coordinates = [one for one in problem.coordinates(hypothesis) if one.term >= 0 or one.name not in held]
+    coordinates = [one for one in problem.coordinates(hypothesis) if one.name not in held]
     if not coordinates:
         return with_better_starts(problem, point)
     round_ = _Round(problem, hypothesis, point.starts, coordinates)

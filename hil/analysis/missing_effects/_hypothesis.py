@@ -49,6 +49,11 @@ class Coordinate:
     step: float = 1e-3
     tolerance: float = TOLERANCE
 
+    @property
+    def is_idle(self) -> bool:
+        """Whether a number of an effect is zero and cannot be less: as if the effect had none."""
+        return self.term >= 0 and self.value == self.lower == 0.0
+
     def at(self, u: float) -> float:
         """The number at a coordinate."""
         return self.value * math.exp(u) if self.logarithmic else self.value + self.scale * u

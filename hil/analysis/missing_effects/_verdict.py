@@ -32,6 +32,7 @@ from hil.analysis.missing_effects._odds import ALIKE, Candidate, weights_of
 from hil.analysis.missing_effects._outcome import Named, Outcome, Verdict
 from hil.analysis.missing_effects._phase import errors_of
 from hil.analysis.missing_effects._problem import Problem
+from hil.analysis.missing_effects._screen import NUMBERS, Scene
 from hil.analysis.missing_effects._search import HALF
 from hil.analysis.missing_effects._share import (
     LAW,
@@ -336,14 +337,13 @@ def _alike(
         if alike:
             found[name] = alike
     for index, use in enumerate(best.point.hypothesis.terms):
-        late = _late_outputs(done, best.point.hypothesis.without(index), use)
-        if late is None:
+        late, names = _late_elsewhere(done, best.point.hypothesis.without(index), use)
+        if not names:
             continue
         linear = all(is_linear(other) for other in best.point.hypothesis.without(index).terms)
         other = best.point if linear else fit(problem, point_at(problem, late, best.point.starts))
         if _apart(problem, best.point, other) < ALIKE:
             label = best.names[index]
-            names = [name for name in late.names if name not in best.names]
             found[label] = (*found.get(label, ()), " + ".join(names))
     return found
 
@@ -367,16 +367,26 @@ def _apart(problem: Problem, one: Point, other: Point) -> float:
     )
 
 
-def _late_outputs(done: Candidates, rest: Hypothesis, use: EffectUse) -> Hypothesis | None:
-    """All outputs late alike in place of a late torque: in a linear axle the two are one."""
-    if use.id not in _LATE:
-        return None
-    has = np.any([one.has for one in done.problem.series], axis=0)
-    sensor, number = _LATE[use.id]
-    for channel in (name for name, there in zip(OUTPUTS, has, strict=True) if there):
-        late = float(use.values[EFFECTS[use.id].parameters[0].name])
-        rest = rest.with_term(EffectUse(sensor, {"channel": channel, number: late}))
-    return rest
+def _late_elsewhere(done: Candidates, rest: Hypothesis, use: EffectUse) -> tuple[Hypothesis, list[str]]:
+    """All outputs late alike in place of a late torque, or that in place of the only output; its names.
+
+    In a linear axle the two are one.
+    """
+    channels = Scene(done.problem, rest).channels
+    for torque, (sensor, number) in _LATE.items():
+        first = EFFECTS[torque].parameters[0].name
+        if use.id == torque:
+            late = float(use.values[first])
+            uses = [EffectUse(sensor, {"channel": one, number: late}) for one in channels]
+            for one in uses:
+                rest = rest.with_term(one)
+            return rest, [label_of(one) for one in uses]
+        if use.id == sensor and len(channels) == 1:
+            late, moved = float(use.values[number]), NUMBERS.get(torque, "")
+            if moved in rest.numbers:
+                return rest.with_number(moved, rest.numbers[moved] + late), [torque]
+            return rest.with_term(EffectUse(torque, {first: late})), [torque]
+    return rest, []
 
 
 def _others(of: Judged, best: Candidate, candidates: Sequence[Candidate], weights: Array) -> list[Named]:

@@ -15,14 +15,14 @@ from hil.core.effects import EFFECTS
 
 #: Parameters by name: unit, and whether zero is possible.
 PARAMETERS = {
-    "motor_inertia": ("kg m2", False),
+    "motor_inertia": ("kg m²", False),
     "gear_ratio": ("motor speed / wheel speed", False),
     "shaft_stiffness": ("N m/rad", False),
     "shaft_damping": ("N m s/rad", True),
-    "wheel_inertia": ("kg m2", False),
+    "wheel_inertia": ("kg m²", False),
     "tyre_stiffness": ("N m/rad", False),
     "tyre_damping": ("N m s/rad", True),
-    "vehicle_inertia": ("kg m2", False),
+    "vehicle_inertia": ("kg m²", False),
     "viscous_drag": ("N m s/rad", True),
     "torque_delay": ("s", True),
 }
