@@ -242,7 +242,7 @@ def _twins(done: Candidates, best: Candidate, least: float) -> None:
     if not best.names and done.has_moved(best):
         twins = [(hypothesis, gain) for gain in gains_of(done, hypothesis)]
     for fewer, twin in twins:
-        if label_of(twin) not in best.names:
+        if label_of(twin) not in fewer.names:
             rival = replace(fewer, terms=(), opened=()).with_term(twin)
             for begins in _in_its_place(done, best, fewer, rival, least):
                 done.fitted(begins, best, at_least=least)
