@@ -40,13 +40,13 @@ def power_density(
     power = np.abs(np.fft.rfft(parts * window)) ** 2 * (step / np.sum(window**2))
     power[..., 1 : -1 if length % 2 == 0 else None] *= 2.0
     if average == "median":
-        density = np.median(power, axis=0) / _bias_of_median(len(power))
+        density = np.median(power, axis=0) / bias_of_median(len(power))
     else:
         density = np.mean(power, axis=0)
     return np.asarray(np.fft.rfftfreq(length, step)), np.asarray(density.T)
 
 
-def _bias_of_median(count: int) -> float:
+def bias_of_median(count: int) -> float:
     """Median over mean of `count` draws with two degrees of freedom: 1 - 1/2 + 1/3 ... (odd counts)."""
     pairs = 2 * np.arange(1, (count - 1) // 2 + 1)
     return float(1.0 + np.sum(1.0 / (pairs + 1.0) - 1.0 / pairs))

@@ -1,4 +1,4 @@
-"""Numbers of the base that moved: which are effects by themselves, and whether most were far off."""
+"""Numbers of the base that moved: which are wrong, and whether most were far off."""
 
 from __future__ import annotations
 
@@ -9,80 +9,14 @@ import numpy as np
 from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._fit import Linearised, Point, point_at
 from hil.analysis.missing_effects._hypothesis import TOLERANCE, Hypothesis, is_loss
-from hil.analysis.missing_effects._odds import ALIKE, Candidate
+from hil.analysis.missing_effects._odds import Candidate
 from hil.analysis.missing_effects._outcome import Named
 from hil.analysis.missing_effects._problem import Problem
-from hil.analysis.missing_effects._screen import NUMBERS, Scene, may_join
+from hil.analysis.missing_effects._screen import NUMBERS
 from hil.analysis.missing_effects._search import HALF
 from hil.analysis.missing_effects._spectrum import RIGHT_TO
-from hil.core.effects import EFFECTS, Effect
+from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
-
-
-def as_the_base_has(done: Candidates, best: Candidate) -> frozenset[str]:
-    """Numbers that are effects by themselves and moved, though the data allow what the base says as well.
-
-    A dead time beside friction that sticks has many minima, and a rigid axle shows it to a sample. So each
-    is held where the base has it, once with all optional numbers and once with each of them left out; in
-    hypotheses that the data do not tell from the best one as well.
-    """
-    hypothesis = best.point.hypothesis
-    found = []
-    for name in NUMBERS.values() if best.names else ():
-        base = done.problem.model.parameters.get(name, 0.0)
-        if base <= 0.0 or abs(hypothesis.numbers[name] - base) <= _tolerance(name, base, done):
-            continue
-        alike = [one for one in done.found.values() if done.score(one) > done.score(best) - ALIKE]
-        begins = [one.point.hypothesis.with_number(name, base) for one in alike]
-        fewer = [
-            hypothesis.with_number(name, base).closed(index, optional)
-            for index, opened in enumerate(hypothesis.opened)
-            for optional in sorted(opened)
-        ]
-        ended = [done.fitted(one, best, held=frozenset({name})) for one in (*begins, *fewer)]
-        if max(done.score(one) for one in ended) > done.score(best) - ALIKE:
-            found.append(name)
-    return frozenset(found)
-
-
-def gains_instead(done: Candidates, best: Candidate) -> dict[str, tuple[str, ...]]:
-    """Of each number that moved where nothing is named: gains that do as well with what the base has.
-
-    A gear ratio and a gain of one of two speeds show the same: only the prior knows that teeth were counted.
-    """
-    if best.names:
-        return {}
-    hypothesis, found = best.point.hypothesis, {}
-    for name in done.has_moved(best):
-        back = hypothesis.with_number(name, done.problem.as_it_came.numbers[name])
-        tried = [
-            done.fitted(back.with_term(use), best, held=frozenset({name})) for use in gains_of(done, back)
-        ]
-        alike = [one for one in tried if done.score(one) > done.score(best) - ALIKE]
-        found[name] = tuple(one.names[0] for one in sorted(alike, key=done.score, reverse=True))
-    return found
-
-
-def gains_of(done: Candidates, hypothesis: Hypothesis) -> list[EffectUse]:
-    """Gains that may join, of each channel that was recorded, of one."""
-    effects = [one for one in EFFECTS.values() if one.off == 1.0 and may_join(one, hypothesis)]
-    return [use for one in effects for use in _on_each_channel(done, hypothesis, one)]
-
-
-def twins_of(done: Candidates, hypothesis: Hypothesis, use: EffectUse) -> list[EffectUse]:
-    """What may show the same as a gain, or as an error of a sensor, in its place: where it does nothing."""
-    effect = EFFECTS[use.id]
-    if effect.off == 1.0:
-        return gains_of(done, hypothesis)
-    return _on_each_channel(done, hypothesis, effect) if "channel" in use.values else []
-
-
-def _on_each_channel(done: Candidates, hypothesis: Hypothesis, effect: Effect) -> list[EffectUse]:
-    channels = Scene(done.problem, hypothesis).channels if effect.text_parameters else ()
-    number: dict[str, float | str] = {effect.parameters[0].name: effect.off}
-    return [EffectUse(effect.id, number | {"channel": name}) for name in channels] or [
-        EffectUse(effect.id, number)
-    ]
 
 
 def numbers_of(at: Linearised, asked: Model) -> dict[str, tuple[float, float, float]]:
@@ -155,7 +89,7 @@ def mismatches(
                     sure,
                     {"value": error},
                     alike,
-                    EFFECTS["sensor_gain"].shown_by if alike else "",
+                    EFFECTS[alike[0].partition("(")[0]].shown_by if alike else "",
                 )
             )
     return found
@@ -166,16 +100,16 @@ def _off(
 ) -> tuple[float, float]:
     """How far a number moved and how sure that is, both in tolerances."""
     base, found, error = numbers[name]
-    return _away(name, found, done), error / _tolerance(name, base, done)
+    return _away(name, found, done), error / tolerance(name, base, done)
 
 
 def _away(name: str, found: float, done: Candidates) -> float:
     """How far a number is from what the base says, in tolerances."""
     base = done.problem.as_it_came.numbers[name]
-    return abs(found - base) / _tolerance(name, base, done)
+    return abs(found - base) / tolerance(name, base, done)
 
 
-def _tolerance(name: str, base: float, done: Candidates) -> float:
+def tolerance(name: str, base: float, done: Candidates) -> float:
     """Of a number of the base, in its unit."""
     size = abs(base) or done.problem.scales[name]  # only numbers that have a scale may be zero
     return float(done.problem.model.tolerance.get(name, TOLERANCE) * size)

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._series import Series
 from hil.analysis.missing_effects._spectrum import bands_of, edges_hz
-from hil.analysis.power_density import power_density
+from hil.analysis.power_density import bias_of_median, power_density
 from hil.core.channels import ANGLES, OUTPUTS
 from hil.plant import GEAR_RATIO, followed, half_window, rounding_step
 
@@ -21,7 +21,7 @@ _TOP = 0.6  # of the band up to half the rate: above it stands no mode of a driv
 _TOP_SLOPE = float(2.0 * np.sin(0.25 * np.pi * (1.0 + _TOP)))  # of differences of white noise, over it, there
 _LATE_S, _MOST_LAGS = 0.03, 60  # at most is a torque that leaps along; samples
 _SOME = 40_000  # samples
-_WINDOW, _WINDOWS = 1024, 8  # samples at most; windows at least, as the median of few densities is too low
+_WINDOW, _WINDOWS = 1024, 8  # samples at most; windows at least
 _BINS = 4096  # of a spectrum of noise
 _LEAST_COLOUR = 1e-4  # no encoder's noise is that much less in one octave than in all
 _DIGITS = 1e-5  # of a channel's rms: what no instrument of a bench resolves
@@ -138,4 +138,7 @@ def white_level(values: Array) -> float:
     """Standard deviation of a sample, by the median density above `_TOP` of the band (lines left out)."""
     length = min(_WINDOW, max(len(values) // _WINDOWS, 2))
     frequency, density = power_density(values[:, None], 1.0, length, average="median")
-    return float(np.sqrt(0.5 * np.median(density[frequency > 0.5 * _TOP, 0])))
+    windows = 1 + (len(values) - length) // (length - length // 2)
+    # a median of any number has the median of one as its own: log 2 of the mean
+    typical = np.median(density[frequency > 0.5 * _TOP, 0]) * bias_of_median(windows) / np.log(2.0)
+    return float(np.sqrt(0.5 * typical))

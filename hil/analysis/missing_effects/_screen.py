@@ -197,9 +197,12 @@ def _scaled(values: dict[str, float | str], name: str) -> Callable[[Sequence[flo
 
 def _size(effect: Effect, scene: Scene) -> float:
     """A large size of an effect's first number, by its unit: a torque, or a torque over a speed."""
-    speed = float(np.sqrt(np.mean([np.nanmean(one.samples[:, :2] ** 2) for one in scene.problem.series])))
     torque = scene.torque_nm * scene.parameters["gear_ratio"]
-    return torque if effect.parameters[0].unit == "N m" else torque / max(speed, 1e-9)
+    if effect.parameters[0].unit == "N m":
+        return torque
+    speeds = [one.samples[:, :2][:, one.has[:2]] for one in scene.problem.series if any(one.has[:2])]
+    speed = float(np.sqrt(np.mean([np.nanmean(one**2) for one in speeds]))) if speeds else 1.0
+    return torque / max(speed, 1e-9)
 
 
 def promised_by(problem: Problem, at: Linearised, hypotheses: Sequence[Hypothesis]) -> list[float]:

@@ -165,10 +165,9 @@ def _among_losses(done: Candidates, grown: Candidate, show: Callable[[str], None
     fewer = grown.point.hypothesis.without(0)
     near, problem = done.at(fewer, grown), done.weighed_as(grown)
     found = promises(problem, linearised(problem, near.point), is_loss)
-    brought = HALF * (grown.log_likelihood - near.log_likelihood)
     best = grown
     for promise in best_by_name(found):
-        if promise.label not in grown.names and promise.gain > brought:
+        if promise.label not in grown.names:
             show(f"fitting {promise.label}")
             instead = done.fitted(fewer.with_term(promise.use), near)
             best = max(best, _opened(done, instead, show), key=done.score)

@@ -8,7 +8,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import replace
 
 import numpy as np
@@ -18,20 +18,18 @@ from hil.analysis.missing_effects._candidates import Candidates
 from hil.analysis.missing_effects._curve import curves_of
 from hil.analysis.missing_effects._fit import Linearised, Point, fit, linearised, point_at
 from hil.analysis.missing_effects._hypothesis import Hypothesis, is_linear, is_loss, label_of
-from hil.analysis.missing_effects._mismatch import (
-    as_known,
-    as_the_base_has,
-    gains_instead,
-    gains_of,
-    is_far,
-    mismatches,
-    numbers_of,
-    twins_of,
-)
+from hil.analysis.missing_effects._mismatch import as_known, is_far, mismatches, numbers_of
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, weights_of
 from hil.analysis.missing_effects._outcome import Named, Outcome, Verdict
 from hil.analysis.missing_effects._phase import errors_of
 from hil.analysis.missing_effects._problem import Problem
+from hil.analysis.missing_effects._rivals import (
+    as_the_base_has,
+    fit_in_place,
+    fit_twins,
+    gains_instead,
+    without,
+)
 from hil.analysis.missing_effects._screen import NUMBERS, Scene
 from hil.analysis.missing_effects._search import HALF
 from hil.analysis.missing_effects._share import (
@@ -50,9 +48,7 @@ from hil.plant import rounding_step
 Array = npt.NDArray[np.float64]
 
 _LATE = {"actuator_lag": ("sensor_lag", "time_constant_s"), "dead_time": ("channel_skew", "delay_s")}
-_ALONE = 2  # single names that may, near noise
 _LED = 6  # candidates, whose odds are looked at where speeds lead
-_RIVALS = 3  # names that may take the place of another
 _SHOWN = 5  # alternatives
 _DRAWN = 40  # models, by which a figure of the new model is known
 
@@ -79,15 +75,15 @@ def judged(of: Judged) -> Outcome:
     done = of.done
     likeliest = done.best
     if done.problem.is_noise(likeliest.point.errors):
-        _twins(done, likeliest, done.score(likeliest) - ALIKE)
+        fit_twins(done, likeliest, done.score(likeliest) - ALIKE)
     elif len(likeliest.names) > 1:
-        _swapped(done, likeliest, is_loss)
+        fit_in_place(done, likeliest, is_loss)
     at = linearised(done.weighed_as(done.best, once=True), done.best.point)
     may_be_off = _may_be_off(of, at)
     as_the_base = as_the_base_has(done, done.best) if may_be_off else frozenset[str]()
     gains = gains_instead(done, done.best) if may_be_off else {}
     best, at, shares = _worth_telling(of, done.best)
-    _swapped(done, best)
+    fit_in_place(done, best)
     likelier = max((one for one in done.found.values() if len(one.names) == len(best.names)), key=done.score)
     near_noise = done.problem.is_noise(best.point.errors)
     if near_noise and done.score(likelier) > done.score(best):
@@ -185,7 +181,7 @@ def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, Linearised, 
         at = linearised(of.done.weighed_as(best, once=True), best.point)
         if not best.names:
             return best, at, []
-        fewer = [_without(of.done, best, index) for index in range(len(best.names))]
+        fewer = [without(of.done, best, index) for index in range(len(best.names))]
         shares = [
             share_of(of, one, best, at, index, wrong_by_laws(of, best, fewer, index))
             for index, one in enumerate(fewer)
@@ -193,80 +189,7 @@ def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, Linearised, 
         least = int(np.argmin(shares))
         if shares[least] >= HALF:
             return best, at, shares
-        best = _without(of.done, best, least)
-
-
-def _swapped(done: Candidates, best: Candidate, asked: Callable[[EffectUse], bool] = lambda _: True) -> None:
-    """Far from noise, fit the best hypothesis with each name in turn replaced by others.
-
-    A forward search finds a name beside those before it; names that could stand in its place must be given
-    the chance, or the data would seem to tell them apart. Near noise the likeliest of those that were left
-    behind are fitted to their end, and of several names each gives way to the likeliest single ones, from the
-    base's numbers as well: what was missing beside them then may have decided between them.
-    """
-    pool = sorted(done.found.values(), key=done.score, reverse=True)
-    least = done.score(best) - ALIKE  # what is less likely decides nothing
-    if done.problem.is_noise(best.point.errors):
-        for one in [one for one in pool if len(one.names) == len(best.names)][: _RIVALS + 1]:
-            if one.names != best.names and done.may_reach(one) > least:
-                done.fitted(one.point.hypothesis, one, at_least=least)
-        alone = [one for one in pool if len(one.names) == 1 and one.names[0] not in best.names]
-        for index in range(len(best.names)) if len(best.names) > 1 else ():
-            for single in alone[:_ALONE]:
-                fewer = best.point.hypothesis.without(index)
-                for begins in _in_its_place(done, best, fewer, single.point.hypothesis, least):
-                    done.fitted(begins, best, at_least=least)
-        return
-    terms: dict[str, tuple[EffectUse, frozenset[str]]] = {}
-    for one in pool:
-        for label, use, opened in zip(
-            one.names, one.point.hypothesis.terms, one.point.hypothesis.opened, strict=True
-        ):
-            if asked(use) and label not in best.names:
-                terms.setdefault(label, (use, opened))
-    for index, use in enumerate(best.point.hypothesis.terms):
-        fewer = best.point.hypothesis.without(index)
-        for rival in [*terms.values()][:_RIVALS] if asked(use) else ():
-            done.fitted(fewer.with_term(*rival), best, at_least=least)
-
-
-def _twins(done: Candidates, best: Candidate, least: float) -> None:
-    """Fit each other gain in the place of a gain, or of numbers that moved, and each other sensor's error.
-
-    An axle shows the same by them. Which of them it is only what the base says can tell, and that is far
-    behind where numbers have moved.
-    """
-    hypothesis = best.point.hypothesis
-    places = [(hypothesis.without(index), use) for index, use in enumerate(hypothesis.terms)]
-    twins = [(fewer, twin) for fewer, use in places for twin in twins_of(done, fewer, use)]
-    if not best.names and done.has_moved(best):
-        twins = [(hypothesis, gain) for gain in gains_of(done, hypothesis)]
-    for fewer, twin in twins:
-        if label_of(twin) not in fewer.names:
-            rival = replace(fewer, terms=(), opened=()).with_term(twin)
-            for begins in _in_its_place(done, best, fewer, rival, least):
-                done.fitted(begins, best, at_least=least)
-
-
-def _in_its_place(
-    done: Candidates, best: Candidate, fewer: Hypothesis, other: Hypothesis, least: float
-) -> list[Hypothesis]:
-    """The best hypothesis, `fewer` of its effects and a rival in their place, where a fit may begin.
-
-    They are the likelier of its own and the rival's; and the base's, to which the effects were fitted first.
-    """
-    joined = fewer.with_term(other.terms[0], other.opened[0])
-    near = max(joined, replace(joined, numbers=other.numbers), key=lambda one: done.score(done.at(one, best)))
-    if not done.has_moved(best):
-        return [near]
-    as_it_came = replace(joined, numbers=done.problem.as_it_came.numbers)
-    held = done.fitted(as_it_came, best, held=frozenset(joined.numbers), at_least=least)
-    return [near, held.point.hypothesis]
-
-
-def _without(done: Candidates, best: Candidate, index: int) -> Candidate:
-    key = tuple(sorted(name for at, name in enumerate(best.names) if at != index))
-    return done.found.get(key) or done.fitted(best.point.hypothesis.without(index), best)
+        best = without(of.done, best, least)
 
 
 def _named(

@@ -199,7 +199,7 @@ def test_odd_recordings_are_handled_and_what_was_done_is_said(tables, run) -> No
     assert all(gap["after"] < 1.1 * gap["noise_floor"] for gap in found["gap"].values())
     assert set(found["holdout_gap"]) == {MOTOR}
     notes = " ".join(found["notes"])
-    for said in ("cut at gaps: 1", "time stamps are uneven", f"10 missing cells of '{WHEEL}'"):
+    for said in ("cut at gaps: 1", "time stamps jitter", f"10 missing cells of '{WHEEL}'"):
         assert said in notes
     assert json.loads(Path("out/diagnosis.json").read_text()) == found
 
