@@ -80,6 +80,7 @@ LEAST = {
     ("POST", "/runs/{run}/abort"): "operator",
     ("GET", "/runs/{run}/files/{name}"): "viewer",
     ("GET", "/comparisons"): "viewer",
+    ("GET", "/comparisons/best"): "viewer",
     ("GET", "/comparisons/traces"): "viewer",
     ("GET", "/trends"): "viewer",
     ("GET", "/models"): "viewer",

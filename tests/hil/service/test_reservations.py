@@ -149,7 +149,7 @@ def test_a_run_takes_as_long_as_the_newest_of_the_same_plan(engine: Engine) -> N
 
 
 def test_hand_over_notes_come_newest_first_and_stay(engine: Engine) -> None:
-    store, day = HandoverStore(engine), datetime.date(2026, 11, 28)
+    store, day = HandoverStore(engine), datetime.datetime.now(datetime.UTC).date()
     first = store.add("sim", "anna", HandoverWanted(day=day, shift="early", text="oil changed\nruns 1 to 4"))
     second = store.add("sim", "bert", HandoverWanted(day=day, shift="late", text="sensor drifts"))
     store.add("other", "bert", HandoverWanted(day=day, shift="late", text="elsewhere"))

@@ -117,9 +117,9 @@ def test_neither_eaten_descriptors_nor_half_open_stop_posts_hold_a_stop_up(tmp_p
             one.stop()
             assert one.service.process.poll() is None
         assert one.over(run)["exit_code"] == 3
-        one.service.post("/benches/bench/reset")
-        one.run_with_torque_on()  # it goes on as if nothing had been
-        one.stop()
+        one.stop()  # it answers as if nothing had been
+        with pytest.raises(RefusedError, match="the axle turns"):  # nothing brakes it
+            one.service.post("/benches/bench/reset")
 
 
 @pytest.mark.slow

@@ -86,7 +86,7 @@ def test_trends_open_with_the_plan_and_criterion_that_have_values(
     expect(choice(page, "Plan")).to_have_value("p")
     expect(choice(page, "Criterion")).to_have_value("s.creep")
     to(page, there, "trends?bench=none")
-    expect(page.get_by_role("alert")).to_contain_text("there is no bench 'none'")
+    expect(page.get_by_text("There is no bench 'none'.")).to_be_visible()
 
 
 def test_a_trend_says_of_which_values_it_is_and_offers_the_others(
