@@ -308,8 +308,8 @@ def _steadied(found: Outcome) -> list[str]:
 def _classes(effects: Sequence[Named]) -> list[str]:
     """Names that the data cannot tell from one another, with the test that would."""
     return [
-        f"these recordings cannot tell {one.id} from {' or '.join(one.alike)}: they share the confidence "
-        f"of {share(one.confidence)}. {one.separating_test}"
+        f"these recordings cannot tell {one.id} from {' or '.join(one.alike)}: one of them is missing. "
+        f"What tells them apart: {one.separating_test}"
         for one in effects
         if one.alike
     ]
