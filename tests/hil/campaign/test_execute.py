@@ -48,7 +48,7 @@ def test_every_simulation_stands_once_with_units(parts, simulations):
     assert "16 of 16" in str(shown[-1])
     assert "left" in str(shown[1])
     fields = pq.read_schema(next(parts.folder.iterdir()))
-    assert fields.field("model.vehicle_inertia").metadata[b"unit"] == b"kg m2"
+    assert fields.field("model.vehicle_inertia").metadata[b"unit"] == "kg m²".encode()
     assert fields.field("value.phase.peak_shaft_torque").metadata[b"unit"] == b"N m"
     assert pd.read_parquet(parts.folder).shape == table.shape
 
