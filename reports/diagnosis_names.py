@@ -17,11 +17,9 @@ def effects_text(found: Diagnosis) -> str:
     """What each named effect is, and where it is seen."""
     if not found.effects:
         return "None."
-    known = dict.fromkeys(e.use.id for e in found.effects)
+    effects = [EFFECTS[id_] for id_ in dict.fromkeys(e.use.id for e in found.effects)]
+    laws = [f"{e.title}: {e.summary} Known by: {_lowered(e.signature)}" for e in effects]
     seen = [f"{_upper(names_of(e))} is seen in {_place(e)}." for e in found.effects]
-    laws = [
-        f"{e.title}: {e.summary} Known by: {_lowered(e.signature)}" for e in map(EFFECTS.__getitem__, known)
-    ]
     return " ".join((*laws, *seen))
 
 

@@ -83,7 +83,7 @@ def _wider(mass: Mass, hypothesis: Hypothesis) -> Iterator[Hypothesis]:
                     EffectUse(effect.id, {"order": order, "amplitude_nm": 1.0, "phase_rad": 0.0})
                 )
             continue
-        sizes = {name: 1.0 for name in effect.acting() if not effect.parameter(name).optional}
+        sizes = dict.fromkeys(effect.acting_with(), 1.0)
         yield hypothesis.with_term(EffectUse(effect.id, dict(sizes)))
         linear = frozenset(name for name in effect.acting() if effect.parameter(name).lower < 0.0)
         if linear - sizes.keys():
@@ -134,10 +134,7 @@ def _regression(mass: Mass, hypothesis: Hypothesis) -> tuple[Array, Array, list[
         if not brakes(effect):
             continue
         rest = dict(use.values) | dict.fromkeys(effect.acting(), effect.off)
-        names = [
-            n for n in effect.acting() if not effect.parameter(n).optional or n in hypothesis.opened[index]
-        ]
-        for name in names:
+        for name in effect.acting_with(hypothesis.opened[index]):
             for phase in (0.0, 0.5 * np.pi) if "phase_rad" in use.values else (0.0,):
                 values = rest | {name: 1.0} | ({"phase_rad": phase} if "phase_rad" in use.values else {})
                 columns.append(mass.column(effect, values, chain))

@@ -167,9 +167,9 @@ class Candidates:
                 break
             before = after
             problem = self.weighed_as(after)
-        if rounds >= ROUNDS and hypothesis.kind == "rigid" and "torque_delay" not in held:
-            best = self._within_a_sample(best)
         if rounds >= ROUNDS:
+            if hypothesis.kind == "rigid" and "torque_delay" not in held:
+                best = self._within_a_sample(best)
             best = self._with_less(best)
         key = tuple(sorted(best.names))
         self.found[key] = max(self.found.get(key, best), best, key=self.score)
@@ -235,7 +235,7 @@ class Candidates:
     def _with_less(self, best: Candidate) -> Candidate:
         """Without a number of an effect that acts by several, where that one does next to nothing."""
         for index, use in enumerate(best.point.hypothesis.terms):
-            acting = [one for one in EFFECTS[use.id].acting() if not EFFECTS[use.id].parameter(one).optional]
+            acting = EFFECTS[use.id].acting_with()
             for name in acting if len(acting) > 1 else ():
                 opened = best.point.hypothesis.opened[index]
                 less = best.point.hypothesis.with_values(index, {name: 0.0}, opened)

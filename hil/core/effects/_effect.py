@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any, Literal
@@ -172,6 +172,10 @@ class Effect:
     def acting(self) -> tuple[str, ...]:
         """Names of the numbers that are all at `off` where the effect does nothing."""
         return self.sizes or (self.parameters[0].name,)
+
+    def acting_with(self, opened: Collection[str] = ()) -> list[str]:
+        """Those of them that are not optional, or `opened`."""
+        return [name for name in self.acting() if name in opened or not self.parameter(name).optional]
 
     def completed(self, values: Mapping[str, float | str]) -> dict[str, float | str]:
         """`values`, which need not give optional numbers, with the defaults of those."""

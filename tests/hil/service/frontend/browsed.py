@@ -47,9 +47,14 @@ def answer(page: playwright.Page, button: str) -> None:
     expect(asked).to_have_count(0)
 
 
-def reset_stop(page: playwright.Page, there: Served, within: playwright.Locator) -> None:
+def reset_stop(
+    page: playwright.Page,
+    there: Served,
+    within: playwright.Locator,
+    button: str = "It is safe: reset the emergency stop",
+) -> None:
     """Reset the emergency stop of the bench sim, of which the axle stands."""
-    within.get_by_role("button", name="It is safe: reset the emergency stop").click()
+    within.get_by_role("button", name=button).click()
     asked = page.get_by_role("alertdialog")
     for _ in range(200):  # a look that is some seconds old is asked about
         if there.get("/benches/sim")["state"] != "emergency_stop":

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -45,11 +44,7 @@ def test_a_run_that_waits_says_why_and_has_the_action_that_ends_it(
     expect(why).to_contain_text("It waits because the emergency stop of sim is latched.")
     there.over(asking)
     refuse_hard_to_use(page)
-    reset = why.get_by_role("button", name=f"reset the emergency stop. Run {waiting} starts then.")
-    until_s = time.monotonic() + 60.0
-    while reset.count() and time.monotonic() < until_s:  # refused while the axle was just seen to turn
-        reset.click()
-        page.wait_for_timeout(1000)
+    reset_stop(page, there, why, f"reset the emergency stop. Run {waiting} starts then.")
     there.over(waiting)
     expect(page.locator("h1")).to_contain_text("pass")
     expect(why).to_have_count(0)
