@@ -6,7 +6,7 @@ docs/explanation/how-a-name-is-found.md has its equations and their sources.
 from hil.analysis.missing_effects._explain import explain_gap
 from hil.analysis.missing_effects._hypothesis import TOLERANCE
 from hil.analysis.missing_effects._noise import proven_noise, white_level
-from hil.analysis.missing_effects._outcome import Curve, Named, Outcome, Replay
+from hil.analysis.missing_effects._outcome import Curve, Named, Outcome, Replay, Verdict
 from hil.analysis.missing_effects._problem import SLOW_NOISE
 from hil.analysis.missing_effects._series import Series, block_means, series_of
 from hil.analysis.missing_effects._simulations import INTERRUPTED, OUT_OF_TIME
@@ -21,6 +21,7 @@ __all__ = [
     "Outcome",
     "Replay",
     "Series",
+    "Verdict",
     "block_means",
     "explain_gap",
     "proven_noise",

@@ -29,6 +29,7 @@ _SETTLED = 0.1  # growth of log likelihood between rounds that ends them
 GROWING = 1.0
 """Growth of log likelihood above which a fit goes on: what it lacks would look like another name."""
 MOST_ROUNDS = 4 * ROUNDS
+LOOK = 2  # rounds, after which it is known whether a fit pays
 _TO_FIRST_ORDER = 2.0  # times what numbers promise may a fit bring
 _STRAIGHT = 0.5  # of a number, by which it may move and still go as it promises
 _LED_S = (0.002, 0.02)  # within which recorded speeds lead, at first closely

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from hil.analysis.missing_effects._candidates import Candidates
+from hil.analysis.missing_effects._candidates import LOOK, Candidates
 from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of
 from hil.analysis.missing_effects._mismatch import tolerance
 from hil.analysis.missing_effects._odds import ALIKE, Candidate
@@ -31,7 +31,7 @@ def fit_twins(done: Candidates, best: Candidate, least: float) -> None:
     for fewer, twin in twins:
         if label_of(twin) not in fewer.names:
             rival = replace(fewer, terms=(), opened=()).with_term(twin)
-            for begins in _in_its_place(done, best, fewer, rival, least):
+            for begins in _in_its_place(done, best, fewer, rival):
                 done.fitted(begins, best, at_least=least)
 
 
@@ -55,7 +55,7 @@ def fit_in_place(
         for index in range(len(best.names)) if len(best.names) > 1 else ():
             for single in alone[:_ALONE]:
                 fewer = best.point.hypothesis.without(index)
-                for begins in _in_its_place(done, best, fewer, single.point.hypothesis, least):
+                for begins in _in_its_place(done, best, fewer, single.point.hypothesis):
                     done.fitted(begins, best, at_least=least)
         return
     terms: dict[str, tuple[EffectUse, frozenset[str]]] = {}
@@ -72,7 +72,7 @@ def fit_in_place(
 
 
 def _in_its_place(
-    done: Candidates, best: Candidate, fewer: Hypothesis, other: Hypothesis, least: float
+    done: Candidates, best: Candidate, fewer: Hypothesis, other: Hypothesis
 ) -> list[Hypothesis]:
     """The best hypothesis, `fewer` of its effects and a rival in their place, where a fit may begin.
 
@@ -83,7 +83,7 @@ def _in_its_place(
     if not done.has_moved(best):
         return [near]
     as_it_came = replace(joined, numbers=done.problem.as_it_came.numbers)
-    held = done.fitted(as_it_came, best, held=frozenset(joined.numbers), at_least=least)
+    held = done.fitted(as_it_came, best, LOOK, held=frozenset(joined.numbers))
     return [near, held.point.hypothesis]
 
 
@@ -151,7 +151,8 @@ def _twins_of(done: Candidates, hypothesis: Hypothesis, use: EffectUse) -> list[
     effect = EFFECTS[use.id]
     if effect.off == 1.0:
         return _gains_of(done, hypothesis)
-    return _on_each_channel(done, hypothesis, effect) if "channel" in use.values else []
+    others = _on_each_channel(done, hypothesis, effect) if "channel" in use.values else []
+    return [one for one in others if label_of(one) != label_of(use)]
 
 
 def _on_each_channel(done: Candidates, hypothesis: Hypothesis, effect: Effect) -> list[EffectUse]:

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from hil.analysis.missing_effects._balance import read_numbers, readings
-from hil.analysis.missing_effects._candidates import GROWING, MOST_ROUNDS, Candidates
+from hil.analysis.missing_effects._candidates import GROWING, LOOK, MOST_ROUNDS, Candidates
 from hil.analysis.missing_effects._fit import (
     Linearised,
     linearised,
@@ -32,7 +32,6 @@ from hil.core.model import EffectUse
 
 HALF = 0.5  # of what stays without it a name must take off
 _TRIED = 8  # hypotheses that a step begins with, the most promising ones; half of them go on each time
-_LOOK = 2  # rounds of a fit, after which it is known whether it pays
 _BESIDE = 0.3  # of an effect's first number: where an optional one in the same unit begins
 _MOST_NAMES = 4
 _NEAR_WHOLE, _SURE = 0.05, 3.0  # of an order; standard errors
@@ -165,12 +164,9 @@ def _among_losses(done: Candidates, grown: Candidate, show: Callable[[str], None
     fewer = grown.point.hypothesis.without(0)
     near, problem = done.at(fewer, grown), done.weighed_as(grown)
     found = promises(problem, linearised(problem, near.point), is_loss)
-    best = grown
-    for promise in best_by_name(found):
-        if promise.label not in grown.names:
-            show(f"fitting {promise.label}")
-            instead = done.fitted(fewer.with_term(promise.use), near)
-            best = max(best, _opened(done, instead, show), key=done.score)
+    others = [one.use for one in best_by_name(found) if one.label not in grown.names]
+    instead = _best_of(done, near, [(fewer.with_term(use), math.inf) for use in others], show, LOOK, grown)
+    best = instead or grown
     if done.problem.is_noise(best.point.errors):
         return best  # what joins it is looked for by what it promises
     pairs: list[Candidate] = []
@@ -178,7 +174,7 @@ def _among_losses(done: Candidates, grown: Candidate, show: Callable[[str], None
         other, opened = one.point.hypothesis.terms[0], one.point.hypothesis.opened[0]
         if is_loss(other):
             show(f"fitting {' + '.join([*best.names, *one.names])}")
-            pairs.append(done.fitted(best.point.hypothesis.with_term(other, opened), best, _LOOK))
+            pairs.append(done.fitted(best.point.hypothesis.with_term(other, opened), best, LOOK))
     ended = [done.fitted(one.point.hypothesis, one) for one in _best_of_each_name(done, pairs)[:1]]
     return max((best, *ended), key=done.score)
 
@@ -188,11 +184,13 @@ def _best_of(
     best: Candidate,
     suggested: Sequence[tuple[Hypothesis, float]],
     show: Callable[[str], None],
+    rounds: int = 1,
+    grown: Candidate | None = None,
 ) -> Candidate | None:
-    """The likeliest of suggested hypotheses.
+    """The likeliest of suggested hypotheses, and of one that has been fitted.
 
-    Each gets a round. Then those are fitted to their end, the most promising first, that come near the best
-    so far by their score and what their numbers promise to add.
+    Each gets some rounds. Then those are fitted to their end, the most promising first, that come near the
+    best so far by their score and what their numbers promise to add.
     """
     begun: list[Candidate] = []
     reached = 0.0
@@ -201,9 +199,8 @@ def _best_of(
         if gain < HALF * min(most, reached):
             break  # others have more before them and more behind them
         show(f"fitting {' + '.join(hypothesis.names)}")
-        begun.append(done.fitted(hypothesis, best, 1))
+        begun.append(done.fitted(hypothesis, best, rounds))
         reached = max(reached, begun[-1].log_likelihood - best.log_likelihood)
-    grown: Candidate | None = None
     for may_reach, one in sorted(_most_promising(done, begun), key=lambda pair: -pair[0]):
         least = -math.inf if grown is None else done.score(grown) - ALIKE
         if may_reach > least:
@@ -341,7 +338,7 @@ def _opened_of(done: Candidates, best: Candidate, index: int, show: Callable[[st
         begins = wider[int(np.argmax(gains))]
         if 0.0 in parameter.opens:  # where it does nothing: a fit goes on from what is settled
             begins = begins.with_values(index, {parameter.name: 0.0}, begins.opened[index])
-        tried = done.fitted(begins, best, _LOOK)
+        tried = done.fitted(begins, best, LOOK)
         if done.score(tried) > done.score(best):  # the next one is judged by what this one leaves
             best = done.fitted(tried.point.hypothesis, tried)
     return best

@@ -66,7 +66,7 @@ class Series:
     is `given` to the model (its wheels turn as recorded); `load` brakes the wheels in N m, None where the
     model takes none. `even`: samples are readings, else interpolated between them. A speed may have been
     recorded as an `angle` (n x 3, rad; NaN where not): then it is what that turns by around each sample
-    (`hil.plant.speed_of`).
+    (`hil.plant.speed_of`). What was put on the grid of others stands `as_sampled` beside it.
     """
 
     name: str
@@ -82,6 +82,7 @@ class Series:
     given: npt.NDArray[np.bool_] = field(default_factory=lambda: np.zeros(len(OUTPUTS), dtype=bool))
     angle: Array = field(default_factory=lambda: np.full((1, len(OUTPUTS)), np.nan))
     source: str = ""
+    as_sampled: Series | None = None
 
     @property
     def has(self) -> npt.NDArray[np.bool_]:
@@ -267,6 +268,7 @@ def _series(model: Model, recording: Recording, grid: Array, dt: float, step_s: 
     """A stretch on its own even times, `dt` apart, or on such as others have."""
     time = recording.time_s
     is_other = abs(dt - step_s) > _ALIKE * dt
+    as_sampled = _series(model, recording, grid, dt, dt) if is_other else None
     if is_other:
         grid, dt = np.arange(time[0], time[-1], step_s), step_s
     nearest = np.clip(np.searchsorted(time, grid - 0.5 * dt), 0, len(time) - 1)
@@ -305,6 +307,7 @@ def _series(model: Model, recording: Recording, grid: Array, dt: float, step_s: 
         given,
         angle,
         str(recording.source),
+        as_sampled,
     )
 
 

@@ -13,13 +13,14 @@ from hil.analysis.diagnosis.data.gap import (
     CONDITIONS,
     ChannelGap,
     GapMap,
+    HeldOut,
     channel_gap,
     channel_gaps,
+    furthest,
     gap_map,
     made_worse,
 )
 from hil.analysis.diagnosis.findings.consequences import consequences
-from hil.analysis.diagnosis.findings.held_out import HeldOut, furthest
 from hil.analysis.diagnosis.findings.named import Where, band_of_gap, clean, where_changed, worth_naming
 from hil.analysis.diagnosis.findings.result import (
     Alternative,
@@ -27,12 +28,11 @@ from hil.analysis.diagnosis.findings.result import (
     NamedEffect,
     Overlay,
     Start,
-    Verdict,
     as_corrections,
 )
 from hil.analysis.diagnosis.findings.separating import most_of, plan_file, separating_plan, worth_a_plan
 from hil.analysis.diagnosis.thresholds import VISIBLE
-from hil.analysis.missing_effects import OUT_OF_TIME, Curve, Named, Outcome, Replay, Series
+from hil.analysis.missing_effects import OUT_OF_TIME, Curve, Named, Outcome, Replay, Series, Verdict
 from hil.core.channels import ANGLES, OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.errors.wording import multiple, share

@@ -4,21 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.data.gap import BANDS_HZ, ChannelGap, GapMap
 from hil.analysis.diagnosis.findings.named import Where
-from hil.analysis.missing_effects import Curve
+from hil.analysis.missing_effects import Curve, Verdict
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.files.toml_file import FORMAT
 from hil.core.model import EffectUse, Model, parameter_of_effect
 
 Array = npt.NDArray[np.float64]
-Verdict = Literal["named", "none", "unknown"]
 
 
 @dataclass(frozen=True)

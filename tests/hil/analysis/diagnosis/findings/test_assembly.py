@@ -14,6 +14,8 @@ from hil.analysis.diagnosis.findings.assembly import diagnosis_of
 from hil.analysis.missing_effects import explain_gap, series_of
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
+from hil.core.recording import Recording
+from hil.plant import replay
 from tests.hil.analysis.missing_effects.turning_mass import base, recording
 
 _TORQUE_NM = 20.0
@@ -40,6 +42,15 @@ def test_the_model_given_back_leaves_the_gap_that_is_stated(found: Diagnosis) ->
     gap = np.sqrt(np.mean(error**2)) / np.std(overlay.measured[:, 0])
     assert gap == pytest.approx(found.gap_after["motor_speed_rad_s"].gap, rel=1e-6)
     assert found.gap_after["motor_speed_rad_s"].gap < 0.1 * found.gap_before["motor_speed_rad_s"].gap
+
+
+def test_what_was_sampled_at_another_rate_is_judged_as_it_was_sampled() -> None:
+    fit, fine = (recording(0.54, 2.17, 1.39, 0.0, torque_nm=_TORQUE_NM, seed=seed) for seed in (0, 5))
+    coarse = Recording({name: values[::5] for name, values in fine.channels.items()}, fine.source)
+    found = diagnose(base(0.54, 2.17), [fit], [coarse])
+    error = coarse["motor_speed_rad_s"] - replay(found.model, coarse)["motor_speed_rad_s"]
+    gap = float(np.sqrt(np.mean(error**2)) / np.std(coarse["motor_speed_rad_s"]))
+    assert found.holdout_after["motor_speed_rad_s"].gap == pytest.approx(gap, rel=1e-6)
 
 
 def test_it_is_written_like_any_diagnosis(found: Diagnosis) -> None:

@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.data.gap import ChannelGap
-from hil.analysis.diagnosis.findings.held_out import Event, HeldOut, furthest
-from hil.analysis.diagnosis.findings.result import Verdict
+from hil.analysis.diagnosis.data.gap import ChannelGap, Event, HeldOut, furthest
 from hil.analysis.diagnosis.thresholds import MOMENT_S, VISIBLE
+from hil.analysis.missing_effects import Verdict
 from hil.core.channels import OUTPUTS
 from tests.hil.analysis.diagnosis.one_recording import NOISE, one_series
 
