@@ -107,6 +107,19 @@ class Projection:
     def _taken_off(self, of: Products, which: slice, directions: Sequence[Direction]) -> Explained:
         """What directions and numbers take off together.
 
+        Numbers that are far from their base's may come back as a joining effect lets them: then it is also
+        looked for without the prior's pull, which holds what the data do not tell.
+        """
+        ways = [self._taken_off_held(of, which, directions, held=True)]
+        if self.is_far:
+            ways.append(self._taken_off_held(of, which, directions, held=False))
+        return max(ways, key=lambda one: one.gain)
+
+    def _taken_off_held(
+        self, of: Products, which: slice, directions: Sequence[Direction], *, held: bool
+    ) -> Explained:
+        """What directions and numbers take off, these held by their prior or not.
+
         Each round weighs octaves by what the one before left of them, as those of a fit do. Where outputs do
         not go straight so much is not known: one round.
         """
@@ -118,7 +131,7 @@ class Projection:
         noise, changes = self.problem.noise, slice(0, len(directions))
         numbers, misfit = slice(len(directions), -1), -1
         prior = np.column_stack([one[self.ends[-1] :] for one in (self.at.slopes, self.at.left)])
-        if not self.is_far:  # numbers that are far off would not all come back
+        if held:
             rest[len(directions) :, len(directions) :] += prior.T @ prior
         had, stays = octaves[..., misfit, misfit], np.ones(octaves.shape[:2])
         best = Explained([1.0] * len(directions), np.zeros(len(self.at.coordinates)), -math.inf)

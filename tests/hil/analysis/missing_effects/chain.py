@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +22,13 @@ NUMBERS = {
     "shaft_damping": 20.0,
     "vehicle_inertia": 200.0,
     "torque_delay": 0.004,
+}
+#: With a tyre.
+THREE = NUMBERS | {
+    "wheel_inertia": 4.0,
+    "tyre_stiffness": 5000.0,
+    "tyre_damping": 400.0,
+    "vehicle_inertia": 350.0,
 }
 #: A rigid axle.
 RIGID = {
@@ -41,11 +49,14 @@ MOTORS = {
 }
 
 
-def chirp(noise: float, *effects: EffectUse) -> Recording:
+def chirp(noise: float, *effects: EffectUse, axle: dict[str, float] = NUMBERS) -> Recording:
     """A chirp of a chain with effects, each channel with so much noise of its standard deviation."""
     time = np.arange(20_000, dtype=np.float64) * 1e-3
     torque = 40.0 * np.sin(2.0 * np.pi * (0.5 * time + 0.7 * time**2))
-    return driven(Model("two_inertia", NUMBERS, effects=effects), torque, noise)
+    kind: Literal["two_inertia", "three_inertia"] = (
+        "three_inertia" if "wheel_inertia" in axle else "two_inertia"
+    )
+    return driven(Model(kind, axle, effects=effects), torque, noise)
 
 
 def driven(model: Model, torque: npt.NDArray[np.float64], noise: float) -> Recording:

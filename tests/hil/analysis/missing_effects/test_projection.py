@@ -14,7 +14,7 @@ from hil.analysis.missing_effects._screen import best_by_name, promises
 from hil.core.channels import OUTPUTS
 from hil.core.effects import Direction
 from hil.core.model import EffectUse, Model
-from tests.hil.analysis.missing_effects.chain import RIGID, chirp_problem, driven
+from tests.hil.analysis.missing_effects.chain import RIGID, THREE, chirp, chirp_problem, driven, problem_about
 
 LATE = EffectUse("channel_skew", {"channel": OUTPUTS[1], "delay_s": 5e-4})
 GAIN = EffectUse("sensor_gain", {"channel": OUTPUTS[1], "gain": 1.02})
@@ -42,6 +42,17 @@ def test_numbers_that_are_fitted_promise_nothing_alone() -> None:
     moved = alone.point.hypothesis.with_number("shaft_stiffness", 6060.0)
     away = done.at(moved, alone)
     assert done.promised(away).gain == pytest.approx(alone.log_likelihood - away.log_likelihood, rel=0.2)
+
+
+def test_numbers_of_a_far_base_are_promised_no_less_than_they_have() -> None:
+    """By one channel nothing tells a scale along which all numbers walk off, once no base's word holds them."""
+    shown = chirp(0.005, EffectUse("viscous_drag", {"coefficient_nms_rad": 0.003}), axle=THREE)
+    torque_alone = shown.without(list(OUTPUTS[:2]))
+    far = THREE | {"gear_ratio": 1.013 * THREE["gear_ratio"]}
+    done = Candidates(problem_about(Model("three_inertia", far), torque_alone))
+    alone = done.fitted(Hypothesis(done.problem.model, dict(done.problem.model.parameters)), None)
+    assert Projection(*done.as_it_is(alone)).is_far
+    assert done.promised(alone).gain > -0.1
 
 
 def test_what_runs_away_promises_nothing() -> None:
