@@ -102,7 +102,12 @@ class Problem:
     @property
     def slow_noise(self) -> float:
         """Largest variance of block means that may be noise, in that of white noise."""
-        return 1.0 + self.series[0].block * (SLOW_NOISE**2 - 1.0)
+        return 1.0 + self.samples_in_a_mean * (SLOW_NOISE**2 - 1.0)
+
+    @property
+    def samples_in_a_mean(self) -> float:
+        """Of errors: recordings of other rates have others."""
+        return float(np.mean([one.block for one in self.series]))
 
     def noise_in(self, errors: Sequence[Array]) -> tuple[Array, Array]:
         """Mean square that is noise beyond doubt, (3,), and the most that may be noise.

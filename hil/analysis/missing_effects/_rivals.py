@@ -32,7 +32,7 @@ def fit_twins(done: Candidates, best: Candidate, least: float) -> None:
         if label_of(twin) not in fewer.names:
             rival = replace(fewer, terms=(), opened=()).with_term(twin)
             for begins in _in_its_place(done, best, fewer, rival):
-                done.fitted(begins, best, at_least=least)
+                _fit_begun(done, begins, best, least)
 
 
 def fit_in_place(
@@ -43,7 +43,8 @@ def fit_in_place(
     A forward search finds a name beside those before it; names that could stand in its place must be given
     the chance, or the data would seem to tell them apart. Near noise the likeliest of those that were left
     behind are fitted to their end, and of several names each gives way to the likeliest single ones, from the
-    base's numbers as well: what was missing beside them then may have decided between them.
+    base's numbers as well: what was missing beside them then may have decided between them. Nor may several
+    names stand where one of these does alone, beside numbers that they have put right.
     """
     pool = sorted(done.found.values(), key=done.score, reverse=True)
     least = done.score(best) - ALIKE  # what is less likely decides nothing
@@ -52,6 +53,9 @@ def fit_in_place(
             if one.names != best.names and done.may_reach(one) > least:
                 done.fitted(one.point.hypothesis, one, at_least=least)
         alone = [one for one in pool if len(one.names) == 1 and one.names[0] not in best.names]
+        for single in alone[:_ALONE] if len(best.names) > 1 else ():
+            bare = replace(best.point.hypothesis, terms=(), opened=())
+            _fit_begun(done, bare.with_term(single.point.hypothesis.terms[0]), best, least)
         for index in range(len(best.names)) if len(best.names) > 1 else ():
             for single in alone[:_ALONE]:
                 fewer = best.point.hypothesis.without(index)
@@ -69,6 +73,12 @@ def fit_in_place(
         fewer = best.point.hypothesis.without(index)
         for rival in [*terms.values()][:_RIVALS] if asked(use) else ():
             done.fitted(fewer.with_term(*rival), best, at_least=least)
+
+
+def _fit_begun(done: Candidates, begins: Hypothesis, best: Candidate, least: float) -> None:
+    """Fit a rival that is judged after some rounds: where its numbers are off it promises little."""
+    begun = done.fitted(begins, best, LOOK)
+    done.fitted(begun.point.hypothesis, begun, at_least=least)
 
 
 def _in_its_place(

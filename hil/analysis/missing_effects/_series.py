@@ -154,11 +154,13 @@ class Series:
         return turned(self.samples, self.dt, gear_ratio, self.first_wheel_angle_rad)
 
 
-def series_of(model: Model, recordings: Sequence[Recording], step_s: float = 0.0) -> list[Series]:
-    """The unbroken stretches of all recordings on even grids as fine as the coarsest of them.
+def series_of(model: Model, recordings: Sequence[Recording], period_s: float = 0.0) -> list[Series]:
+    """The unbroken stretches of all recordings on even grids, with means over the same time.
+
+    A grid is a recording's own where as many of its samples make that time as those of others do.
 
     Args:
-        step_s: of the grids, where others beside these have given it.
+        period_s: of means, where others beside these have given it.
 
     Raises:
         BadInputError: no torque request, none of the model's outputs, too short, too slowly sampled, or no
@@ -171,8 +173,9 @@ def series_of(model: Model, recordings: Sequence[Recording], step_s: float = 0.0
     for piece in pieces:
         _refuse_too_little(piece)
     timed = [_timed(piece) for piece in pieces]
-    step_s = step_s or max((dt for *_, dt in timed), default=0.0)
-    found = [_series(model, *one, step_s) for one in timed]
+    coarsest = max((dt for *_, dt in timed), default=0.0)
+    period_s = period_s or coarsest * _samples_in_a_mean(coarsest)
+    found = [_series(model, *one, period_s) for one in timed]
     if is_regulated(model) and not any(one.has.any() for one in found):
         raise BadInputError(
             "the recordings have nothing beside the speed that the wheels are held at",
@@ -264,13 +267,18 @@ def _timed(recording: Recording) -> tuple[Recording, Array, float]:
     return true, grid, dt
 
 
-def _series(model: Model, recording: Recording, grid: Array, dt: float, step_s: float) -> Series:
-    """A stretch on its own even times, `dt` apart, or on such as others have."""
-    time = recording.time_s
-    is_other = abs(dt - step_s) > _ALIKE * dt
-    as_sampled = _series(model, recording, grid, dt, dt) if is_other else None
+def _samples_in_a_mean(dt: float) -> int:
+    return max(1, round(1.0 / (FIT_RATE_HZ * dt))) if dt else 1
+
+
+def _series(model: Model, recording: Recording, grid: Array, dt: float, period_s: float) -> Series:
+    """A stretch on its own even times, `dt` apart, or on such as make the means that others have."""
+    time, block = recording.time_s, max(1, math.floor(period_s / dt * (1.0 + _ALIKE)))
+    is_other = abs(block * dt - period_s) > _ALIKE * period_s
+    as_sampled = _series(model, recording, grid, dt, dt * _samples_in_a_mean(dt)) if is_other else None
     if is_other:
-        grid, dt = np.arange(time[0], time[-1], step_s), step_s
+        dt = period_s / block
+        grid = np.arange(time[0], time[-1], dt)
     nearest = np.clip(np.searchsorted(time, grid - 0.5 * dt), 0, len(time) - 1)
     even = bool(np.max(np.abs(time[nearest] - grid)) <= _EVEN_SHARE * dt) and not is_other
     uneven = "sampled at another rate" if is_other else "" if even else "time stamps are uneven"
@@ -287,7 +295,6 @@ def _series(model: Model, recording: Recording, grid: Array, dt: float, step_s: 
         elif name in recording:
             samples[:, column], note = without_spikes(on_grid(recording[name]), name, dt)
             notes += [note] if note else []
-    block = max(1, round(1.0 / (FIT_RATE_HZ * dt)))
     if not even:  # a block without a reading of its own would show what was interpolated
         block = max(block, math.ceil(float(np.quantile(np.diff(time), _USUAL)) / dt))
     torque = recording[INPUT][nearest] if even else held_over(grid, dt, time, recording[INPUT])

@@ -65,7 +65,7 @@ def as_far_as_known(of: Judged, why: str) -> Outcome:
         "unknown", (), tuple(_others(of, alone, candidates, weights)), as_known(done.problem, numbers),
         is_far(numbers, done), model, model,
         curves_of(alone.point.hypothesis, of.fitted), 0.0,
-        done.problem.noise * np.sqrt(done.problem.series[0].block), (), of.fitted, of.held_out,
+        done.problem.noise * np.sqrt(done.problem.samples_in_a_mean), (), of.fitted, of.held_out,
         unfinished=why,
     )  # fmt: skip
 
@@ -123,8 +123,8 @@ def judged(of: Judged) -> Outcome:
         verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), as_known(done.problem, numbers),
         done.problem.far, model, done.found[()].point.hypothesis.model(),
         curves_of(best.point.hypothesis, of.fitted), 0.0,
-        done.problem.noise * np.sqrt(done.problem.series[0].block), at.drawn(_DRAWN), of.fitted, of.held_out,
-        steadied,
+        done.problem.noise * np.sqrt(done.problem.samples_in_a_mean), at.drawn(_DRAWN),
+        of.fitted, of.held_out, steadied,
     )  # fmt: skip
 
 

@@ -36,7 +36,8 @@ def examine(
     """
     for recording in recordings:
         refuse_implausible(recording)
-    series = series_of(model, recordings, beside[0].dt if beside else 0.0) if recordings else []
+    period_s = beside[0].dt * beside[0].block if beside else 0.0
+    series = series_of(model, recordings, period_s) if recordings else []
     if not series:
         return [], []
     noise = proven_noise([*series, *beside], {})

@@ -69,10 +69,9 @@ def diagnosis_of(
         base: the model as it came.
         notes: on the data.
     """
-    fitted = _Shown.of(found.fitted, base, found.model, found.noise)
-    if found.verdict == "unknown" and any(one.gap > fitted.before[c].gap for c, one in fitted.after.items()):
+    fitted, held = (_Shown.of(one, base, found.model, found.noise) for one in (found.fitted, found.held_out))
+    if found.verdict == "unknown" and (fitted.has_grown or held.has_grown):
         return diagnosis_of(_as_it_came(found, base), base, asked, (*notes, NUMBERS_TRADE))
-    held = _Shown.of(found.held_out, base, found.model, found.noise)
     named = tuple(_named(found, one, fitted) for one in found.effects)
     small = [one for one in named if not worth_naming(one.use, fitted.traces, asked.least, base)]
     effects = tuple(one for one in named if one not in small)
@@ -156,6 +155,11 @@ class _Shown:
         gaps = [channel_gaps(traces, noise, samples) for samples in (before, after)]
         maps = [gap_map(traces, noise, samples) for samples in (before, after)]
         return cls(replays, traces, before, after, gaps[0], gaps[1], maps[0], maps[1])
+
+    @property
+    def has_grown(self) -> bool:
+        """Whether the model given back leaves more of any channel than the one that came."""
+        return any(one.gap > self.before[channel].gap for channel, one in self.after.items())
 
     @property
     def overlays(self) -> tuple[Overlay, ...]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -53,9 +52,7 @@ def chirp(noise: float, *effects: EffectUse, axle: dict[str, float] = NUMBERS) -
     """A chirp of a chain with effects, each channel with so much noise of its standard deviation."""
     time = np.arange(20_000, dtype=np.float64) * 1e-3
     torque = 40.0 * np.sin(2.0 * np.pi * (0.5 * time + 0.7 * time**2))
-    kind: Literal["two_inertia", "three_inertia"] = (
-        "three_inertia" if "wheel_inertia" in axle else "two_inertia"
-    )
+    kind = "three_inertia" if "wheel_inertia" in axle else "two_inertia"
     return driven(Model(kind, axle, effects=effects), torque, noise)
 
 

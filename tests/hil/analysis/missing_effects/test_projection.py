@@ -45,7 +45,7 @@ def test_numbers_that_are_fitted_promise_nothing_alone() -> None:
 
 
 def test_numbers_of_a_far_base_are_promised_no_less_than_they_have() -> None:
-    """By one channel nothing tells a scale along which all numbers walk off, once no base's word holds them."""
+    """By one channel nothing tells a scale: along it all numbers walk off once no prior holds them."""
     shown = chirp(0.005, EffectUse("viscous_drag", {"coefficient_nms_rad": 0.003}), axle=THREE)
     torque_alone = shown.without(list(OUTPUTS[:2]))
     far = THREE | {"gear_ratio": 1.013 * THREE["gear_ratio"]}

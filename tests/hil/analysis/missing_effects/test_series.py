@@ -126,18 +126,31 @@ def test_outputs_without_a_function_are_not_compared() -> None:
             series_of(model, [lacking])
 
 
+def _every(count: int) -> Recording:
+    whole = _recorded()
+    return replace(whole, channels={name: values[::count] for name, values in whole.channels.items()})
+
+
+def test_recordings_of_other_rates_keep_their_samples_where_means_over_the_same_time_can_be_made() -> None:
+    fine, coarse = _every(1), _every(3)
+    for order in ((fine, coarse), (coarse, fine)):
+        both = series_of(_MASS, order)
+        assert [one.dt for one in both] == pytest.approx([1e-3 if one is fine else 3e-3 for one in order])
+        assert [one.rate_hz for one in both] == pytest.approx([1.0 / 3e-3] * 2)
+        assert not any("another rate" in note for one in both for note in one.notes)
+
+
 def test_recordings_of_other_rates_come_on_the_grid_of_the_coarsest() -> None:
-    fine = _recorded()
-    coarse = replace(fine, channels={name: values[::3] for name, values in fine.channels.items()})
+    fine, coarse = _every(2), _every(3)
     for order in ((fine, coarse), (coarse, fine)):
         both = series_of(_MASS, order)
         assert [one.dt for one in both] == pytest.approx([3e-3, 3e-3])
         assert {one.rate_hz for one in both} == {both[0].rate_hz}
         noted = [any(note.startswith("sampled at another rate") for note in one.notes) for one in both]
         assert noted == [one is fine for one in order]
-    (held,) = series_of(_MASS, [fine], step_s=3e-3)
+    (held,) = series_of(_MASS, [fine], period_s=3e-3)
     assert held.dt == 3e-3
-    impulse = float(np.sum(fine[INPUT]) * 1e-3)
+    impulse = float(np.sum(fine[INPUT]) * 2e-3)
     assert float(np.sum(held.torque) * held.dt) == pytest.approx(
         impulse, abs=0.01 * np.max(np.abs(fine[INPUT]))
     )
