@@ -68,7 +68,7 @@ def overlay_figure(overlay: Overlay) -> Figure:
     """Measured and simulated of the channel that the new model changes most, narrow."""
     column = int(np.argmax(_changes(overlay)))
     shown = _in_time(overlay, column, OUTPUTS[column])
-    return replace(shown, id="before-and-after", wide=False, caption=f"In {overlay.name}.")
+    return replace(shown, id="before-and-after", wide=False, caption=f"Recording {overlay.name}.")
 
 
 def _change(overlay: Overlay) -> float:

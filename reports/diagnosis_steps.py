@@ -40,7 +40,7 @@ def _steps(found: Diagnosis) -> Iterator[tuple[str, str]]:
         )
     if not found.holdout_after:
         yield "Hold a recording back: these gaps are of data that were fitted", _HOLD
-    if found.verdict != "unknown":
+    if found.verdict != "unknown" and not (found.open_channels or found.held_out_open):
         yield "Go on with the new model", _REPLAY if found.model.load_input else _USE
 
 

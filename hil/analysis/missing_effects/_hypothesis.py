@@ -232,8 +232,10 @@ def laws_of(use: EffectUse) -> Laws:
 
 
 def is_linear(use: EffectUse) -> bool:
-    """Whether an effect changes the linear chain or what a sensor reads, and no law bends."""
+    """Whether an effect changes the linear chain or what a sensor reads, or is a gain: no law bends."""
     law = EFFECTS[use.id].law
+    if 0.0 < EFFECTS[use.id].off < math.inf:
+        return True
     return (law.chain is not None or law.reads is not None) and law.tyre_rate is None
 
 

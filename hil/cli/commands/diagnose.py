@@ -58,7 +58,8 @@ def text_of(found: Diagnosis, out: Path) -> str:
             about = a.use.values.get("channel", a.use.values.get("parameter"))
             name = f"{a.use.id} of {about}" if about else a.use.id
             test = f"hil run {out / a.plan}" if a.plan else a.separating_test
-            lines.append(f"  or {name} ({chance(a.confidence)}); test to distinguish them: {test}")
+            link, them = ("or", "them") if found.effects else ("perhaps", "it from others")
+            lines.append(f"  {link} {name} ({chance(a.confidence)}); test to distinguish {them}: {test}")
     if found.start is not None:
         lines.append("  the base model was far from the data; identified first:")
         for parameter, (old, new, error) in found.start.parameters.items():

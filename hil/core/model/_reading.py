@@ -86,9 +86,9 @@ def _readable(number: Any) -> None:
 def _kind(kind: Any) -> str:
     if isinstance(kind, str) and kind in MODEL_KINDS:
         return kind
-    known = did_you_mean(kind, MODEL_KINDS) if isinstance(kind, str) else ", ".join(MODEL_KINDS)
     what = "kind is missing" if kind is None else f"kind is {shown(kind)}"
-    raise BadInputError(what, fix=f"kind is one of: {known}")
+    known = f"kind is one of {', '.join(MODEL_KINDS)}"
+    raise BadInputError(what, fix=did_you_mean(kind, MODEL_KINDS) if isinstance(kind, str) else known)
 
 
 def _table(value: Any, name: str, mistakes: Mistakes) -> dict[str, Any]:

@@ -31,6 +31,7 @@ _WHAT_TO_DO = (
     "something is missing, or a number is wrong, that the recordings fitted do not show; give those held out "
     "as recordings too, and hold others out"
 )
+_FITTED_TOO = "something more is missing, which the recordings fitted show as well"
 _OR_ANGLES = (
     "a ripple's angle, integrated from a speed, walks off with that speed's noise (record the angle), or "
 )
@@ -169,13 +170,15 @@ class Event:
 class HeldOut:
     """Gaps with the model as it came and with the one given back, empty without recordings held out.
 
-    `walks`: the model follows an angle that was not recorded.
+    `walks`: the model follows an angle that was not recorded. `fitted_too`: recordings that were fitted keep
+    more than noise as well.
     """
 
     before: dict[str, ChannelGap]
     after: dict[str, ChannelGap]
     event: Event | None
     walks: bool = False
+    fitted_too: bool = False
 
     def open(self, verdict: Verdict) -> tuple[str, ...]:
         """Channels that keep more than noise, or where nothing is named, more than is proven to be noise."""
@@ -200,7 +203,8 @@ class HeldOut:
                 f"held-out recording {e.recording} is off by {multiple(e.noises)} the noise in {e.channel} "
                 f"at {e.time_s:.4g} s"
             )
-        return f"{'; '.join(lines)}: {_OR_ANGLES if self.walks else ''}{_WHAT_TO_DO}" if lines else ""
+        why = _FITTED_TOO if self.fitted_too else _WHAT_TO_DO
+        return f"{'; '.join(lines)}: {_OR_ANGLES if self.walks else ''}{why}" if lines else ""
 
 
 def furthest(traces: Sequence[Series], noise: Array, simulated: Sequence[Array]) -> Event | None:

@@ -77,7 +77,8 @@ def diagnosis_of(
     effects = tuple(one for one in named if one not in small)
     follows = any(EFFECTS[use.id].law.follows for use in found.model.effects)
     walks = follows and not any(one.of_angle.any() for one in held.traces)
-    unseen = HeldOut(held.before, held.after, furthest(held.traces, found.noise, held.after_samples), walks)
+    event = furthest(held.traces, found.noise, held.after_samples)
+    unseen = HeldOut(held.before, held.after, event, walks, fitted_too=bool(_open(fitted.after)))
     verdict, remaining = _verdict(found, effects, unseen, fitted)
     doubt = unseen.words(verdict)
     start, updates = _numbers(found, fitted)
@@ -312,8 +313,8 @@ def _steadied(found: Outcome) -> list[str]:
 def _classes(effects: Sequence[Named]) -> list[str]:
     """Names that the data cannot tell from one another, with the test that would."""
     return [
-        f"these recordings cannot tell {one.id} from {' or '.join(one.alike)}: one of them is missing. "
-        f"What tells them apart: {one.separating_test}"
+        f"these recordings cannot tell {EFFECTS[one.id].label(one.use.values)} from "
+        f"{' or '.join(one.alike)}: one of them is missing. What tells them apart: {one.separating_test}"
         for one in effects
         if one.alike
     ]

@@ -132,7 +132,8 @@ def band_of_gap(traces: Sequence[Series], noise: Array, simulated: Sequence[Arra
     share = np.cumsum(over) / max(float(over.sum()), 1e-30)
     low, high = np.interp(BAND_SHARES, share, frequency)
     if high - low <= LINE_WIDTH * frequency[1]:
-        return f"it is a line at {frequency[int(np.argmax(over))]:.3g} Hz"
+        line = float(frequency[int(np.argmax(over))])
+        return f"it is a line at {line:.3g} Hz" if line else f"it is slower than {frequency[1]:.2g} Hz"
     return f"it lies between {low:.2g} and {high:.2g} Hz"
 
 
