@@ -94,7 +94,7 @@ def toml_text(path: Path, fix: str = "give the TOML file of a model, a controlle
     return read_text(path, LARGEST_BYTES, fix)
 
 
-def parse_toml(text: str, where: str, fix: str = "") -> dict[str, Any]:
+def parse_toml(text: str, where: str, fix: str = "correct the file there") -> dict[str, Any]:
     """Contents of a TOML text; `where` names it in messages, `fix` is what to do.
 
     Raises:

@@ -88,6 +88,7 @@ def _refuse_backwards(recording: Recording, first: int, time: Array, before_s: f
         raise BadInputError(
             f"'{TIME}' does not increase: {time[row + 1]:g} s follows {time[row]:g} s",
             where=recording.place(first + row),
+            fix="sort the samples by time, or cut the recording there",
         )
 
 
@@ -114,6 +115,7 @@ def _mend(recording: Recording, name: str, lacking: _Lacking, *, allow_missing: 
         raise BadInputError(
             f"{share:.1%} of '{name}' is NaN or infinite, {LARGEST_MISSING_SHARE:.0%} is allowed",
             where=f"first at {recording.place(lacking.first)}",
+            fix="cut out what was not measured, or leave the channel out",
         )
     places, cells = _interpolated(recording, name)
     if isinstance(recording.channels, StoredColumns):

@@ -48,7 +48,11 @@ def read_mat(path: Path, columns: ColumnMap = AS_NAMED) -> Recording:
             warnings.simplefilter("ignore")  # objects that only MATLAB knows, names that stand twice
             held = loadmat(path, appendmat=False, squeeze_me=False, struct_as_record=True)
     except Exception as error:  # of many kinds, for whatever is broken
-        raise BadInputError("not a MAT file, or a broken one", where=str(path)) from error
+        raise BadInputError(
+            "not a MAT file, or a broken one",
+            where=str(path),
+            fix="save it again in MATLAB, or as a CSV file",
+        ) from error
     values = {name: value for name, value in held.items() if not name.startswith("__")}
     evidence = _text(values.pop(_EVIDENCE, None))
     units = _units_of(values.pop(_UNITS, None))

@@ -64,4 +64,4 @@ def test_a_plan_that_is_such_a_file_is_refused_as_no_plan() -> None:
 def test_what_is_no_toml_is_named_with_its_line_once(text: str, words: str) -> None:
     with pytest.raises(BadInputError) as refused:
         parse_toml(text, "FILE")
-    assert str(refused.value) == words
+    assert str(refused.value) == f"{words}\n  correct the file there"
