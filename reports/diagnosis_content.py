@@ -118,7 +118,8 @@ def first(found: Diagnosis) -> Part:
     held = bool(found.holdout_after)
     tables = (*_if_any(effects_table(found)), _gaps(found)[-1 if held else 0])
     figures = (*curve_figures(found)[:1], overlay_figure(shown_overlay(found)))
-    return Part("glance", "What is missing, and what it closes", "", tables, figures=figures)
+    title = "What is missing, and what it closes" if found.effects else "What stays of the gap"
+    return Part("glance", title, "", tables, figures=figures)
 
 
 def parts(found: Diagnosis) -> list[Part]:
