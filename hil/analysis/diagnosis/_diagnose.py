@@ -45,10 +45,12 @@ def diagnose(
     stated, it is raised.
 
     Raises:
-        BadInputError: the recordings cannot belong to the model (inverted, swapped, dead, clipped, wrong
-            gear ratio, values that no axle gives), hold the same data twice, have no output of the model, or
-            differ in whether they have a speed or its angle.
+        BadInputError: there is no recording; the recordings cannot belong to the model (inverted, swapped,
+            dead, clipped, wrong gear ratio, values that no axle gives), hold the same data twice, have no
+            output of the model, or differ in whether they have a speed or its angle.
     """
+    if not recordings:
+        raise BadInputError("there is no recording", fix="give at least one to be fitted")
     refuse_separate(model, "a diagnosis")
     refuse_same_data(recordings, holdout)
     _refuse_mixed([*recordings, *holdout])

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from hil.analysis.diagnosis import examine
+from hil.analysis.diagnosis import diagnose, examine
 from hil.analysis.stretches import unbroken
 from hil.cli._app import guarded
 from hil.core.errors import BadInputError
@@ -321,3 +321,8 @@ def test_a_flat_torque_rounded_is_no_clip_and_a_clipped_one_is() -> None:
     channels[SHAFT] = np.clip(channels[SHAFT], -top, top)
     with pytest.raises(BadInputError, match="looks clipped"):
         examine(rigid, [rounded(Recording(channels, Path("chirp.csv")), SHAFT, top / 30.0)])
+
+
+def test_no_recording_is_refused() -> None:
+    with pytest.raises(BadInputError, match="no recording"):
+        diagnose(MODEL, [])
