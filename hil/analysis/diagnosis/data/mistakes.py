@@ -53,9 +53,7 @@ _BANDS = len(_EDGES_HZ) - 1
 _RPM = 60.0 / (2.0 * np.pi)
 _LEAST, _FAR = 1e-30, 1e9
 _STEP = 0.1
-_MORE = (
-    0.5  # as far may outputs all be larger than a model's as smaller: less torque comes than was asked for
-)
+_MORE = 0.5  # times as far may outputs be above a model's as below: less torque comes than was asked for
 _SIZES = np.arange(-90, 91) * _STEP  # logs of factors that are tried
 
 
