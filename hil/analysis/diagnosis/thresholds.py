@@ -18,6 +18,7 @@ ALIKE_SPEEDS = 0.02  #: of the same | where a model says that both speeds go tog
 TREND = 2  #: degree | of what is left aside: initial speeds, what loads the axle evenly
 ANYTHING = 0.25  #: probability | that in an octave nothing goes together, though nothing is mistaken
 FREE_SIZE = 0.5  #: log | by which sizes by model and as recorded differ
+LARGER_SIZE = 0.25  #: log | by which outputs are all above a model's: less torque comes than was asked for
 GEAR_SIZE = 0.12  #: log | by which the ratio of speeds differs from the model's
 ANY_SIZE = 3.0  #: log | by which sizes in another unit differ
 SHOWS = 10.0  #: times the noise's power | an octave with less says nothing

@@ -45,7 +45,7 @@ def proven_noise(series: Sequence[Series], stated: Mapping[str, float]) -> Array
         if name == SHAFT:  # a rigid axle's leaps with the torque, whose steps are no noise
             white = min(white, np.median([_white_beside_torque(one) for one in have]))
         step = rounding_step(np.concatenate([one.samples[:, column] for one in have]))
-        maker = stated.get(name, 0.0) / np.sqrt(np.mean([one.block for one in have]))
+        maker = stated.get(name, 0.0) / np.sqrt(np.median([one.block for one in have]))
         digits = _DIGITS * np.sqrt(np.mean([np.mean(one.samples[:, column] ** 2) for one in have]))
         levels[column] = max(float(white), step / np.sqrt(12.0), maker, float(digits), 1e-12)
     return levels

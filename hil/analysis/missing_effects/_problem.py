@@ -107,7 +107,7 @@ class Problem:
     @property
     def samples_in_a_mean(self) -> float:
         """Of errors: recordings of other rates have others."""
-        return float(np.mean([one.block for one in self.series]))
+        return float(np.median([one.block for one in self.series]))
 
     def noise_in(self, errors: Sequence[Array]) -> tuple[Array, Array]:
         """Mean square that is noise beyond doubt, (3,), and the most that may be noise.

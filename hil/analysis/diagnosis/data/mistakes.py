@@ -29,6 +29,7 @@ from hil.analysis.diagnosis.thresholds import (
     ANYTHING,
     FREE_SIZE,
     GEAR_SIZE,
+    LARGER_SIZE,
     LIKELIER,
     SHOWS,
     SLOW_NOISE,
@@ -53,7 +54,6 @@ _BANDS = len(_EDGES_HZ) - 1
 _RPM = 60.0 / (2.0 * np.pi)
 _LEAST, _FAR = 1e-30, 1e9
 _STEP = 0.1
-_MORE = 0.5  # times as far may outputs be above a model's as below: less torque comes than was asked for
 _SIZES = np.arange(-90, 91) * _STEP  # logs of factors that are tried
 
 
@@ -185,7 +185,7 @@ def _log_likelihood(pairs: _Pairs, mistake: _Mistake) -> float:
     """Log likelihood by a mistake over that of pairs that are anything; sizes are integrated over."""
     factors = [*mistake.outputs, mistake.outputs[0] / mistake.outputs[1]]
     by_size = [_by_size(pairs, pair, factor, mistake) for pair, factor in enumerate(factors)]
-    width = np.where(_SIZES > 0.0, _MORE, 1.0) * FREE_SIZE / np.sqrt(2.0)
+    width = np.where(_SIZES > 0.0, LARGER_SIZE, FREE_SIZE) / np.sqrt(2.0)
     shared = -np.abs(_SIZES) / width - np.log(np.sum(np.exp(-np.abs(_SIZES) / width)))
     outputs = float(np.logaddexp.reduce(shared + np.sum(by_size[:_GEAR], axis=0)))
     return outputs + float(by_size[_GEAR][len(_SIZES) // 2])
