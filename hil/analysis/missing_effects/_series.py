@@ -173,7 +173,7 @@ def series_of(model: Model, recordings: Sequence[Recording], period_s: float = 0
     for piece in pieces:
         _refuse_too_little(piece)
     timed = [_timed(piece) for piece in pieces]
-    coarsest = max((dt for *_, dt in timed), default=0.0)
+    coarsest = max((dt for *_, dt in timed), default=1.0 / FIT_RATE_HZ)
     period_s = period_s or coarsest * _samples_in_a_mean(coarsest)
     found = [_series(model, *one, period_s) for one in timed]
     if is_regulated(model) and not any(one.has.any() for one in found):
@@ -268,7 +268,7 @@ def _timed(recording: Recording) -> tuple[Recording, Array, float]:
 
 
 def _samples_in_a_mean(dt: float) -> int:
-    return max(1, round(1.0 / (FIT_RATE_HZ * dt))) if dt else 1
+    return max(1, round(1.0 / (FIT_RATE_HZ * dt)))
 
 
 def _series(model: Model, recording: Recording, grid: Array, dt: float, period_s: float) -> Series:

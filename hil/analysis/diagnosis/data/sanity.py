@@ -36,7 +36,7 @@ def examine(
     """
     for recording in recordings:
         refuse_implausible(recording)
-    period_s = beside[0].dt * beside[0].block if beside else 0.0
+    period_s = 1.0 / beside[0].rate_hz if beside else 0.0
     series = series_of(model, recordings, period_s) if recordings else []
     if not series:
         return [], []
