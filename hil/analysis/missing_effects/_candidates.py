@@ -31,7 +31,6 @@ GROWING = 1.0
 MOST_ROUNDS = 4 * ROUNDS
 LOOK = 2  # rounds, after which it is known whether a fit pays
 _TO_FIRST_ORDER = 2.0  # times what numbers promise may a fit bring
-_STRAIGHT = 0.5  # of a number, by which it may move and still go as it promises
 _LED_S = (0.002, 0.02)  # within which recorded speeds lead, at first closely
 _ASTRAY = 2.0  # noises left, above which they do
 _OF_A_SAMPLE = (0.02, 0.25, 0.5, 0.75, 0.98)  # where a dead time may be within the sample that it ends in
@@ -119,10 +118,9 @@ class Candidates:
         problem = self.led_problem.weighed_as(led.errors)
         return problem, linearised(problem, led)
 
-    def may_reach(self, candidate: Candidate, promised: Explained | None = None) -> float:
+    def may_reach(self, candidate: Candidate) -> float:
         """The score to which its numbers may still bring a candidate, by what they promise."""
-        gain = (promised or self.promised(candidate)).gain
-        return self.score(candidate) + _TO_FIRST_ORDER * max(gain, 0.0)
+        return self.score(candidate) + _TO_FIRST_ORDER * max(self.promised(candidate).gain, 0.0)
 
     def fitted(
         self,
@@ -136,8 +134,8 @@ class Candidates:
 
         Args:
             held: numbers of the base that stay what they are.
-            at_least: a score; a fit ends where neither its last round nor its numbers promise to reach it, or
-                does not begin where these promise to move so little that they may be believed.
+            at_least: a score; a fit ends where neither its last round nor its numbers promise to reach it.
+                Not in its first rounds: where numbers are off they promise little.
         """
         goes_on = near is not None and near.point.hypothesis is hypothesis
         point = near.point if near and goes_on else self._begun(hypothesis, near)
@@ -147,11 +145,6 @@ class Candidates:
             point = max(point, led, key=lambda one: self.score(self.judged(one)))
         best = before = self.judged(point)
         problem = self.problem
-        if at_least > -math.inf and not (goes_on or hypothesis.is_abrupt):
-            promised = self.promised(best)
-            goes_straight = np.max(np.abs(promised.moves), initial=0.0) < _STRAIGHT
-            if goes_straight and self.may_reach(best, promised) < at_least:
-                return best
         if goes_on:
             problem = self.weighed_as(best)
         elif hypothesis.kind == "rigid":  # slow errors of a mass are friction; a chain's bend its resonances
@@ -164,7 +157,8 @@ class Candidates:
             growth = after.log_likelihood - before.log_likelihood
             if abs(growth) < _SETTLED or (number >= ROUNDS - 1 and growth < GROWING):
                 break
-            if self.score(after) + growth < at_least and self.may_reach(after) < at_least:
+            known = goes_on or number + 1 >= LOOK
+            if known and self.score(after) + growth < at_least and self.may_reach(after) < at_least:
                 break
             before = after
             problem = self.weighed_as(after)

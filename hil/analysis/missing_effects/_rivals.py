@@ -32,7 +32,7 @@ def fit_twins(done: Candidates, best: Candidate, least: float) -> None:
         if label_of(twin) not in fewer.names:
             rival = replace(fewer, terms=(), opened=()).with_term(twin)
             for begins in _in_its_place(done, best, fewer, rival):
-                _fit_begun(done, begins, best, least)
+                done.fitted(begins, best, at_least=least)
 
 
 def fit_in_place(
@@ -54,8 +54,8 @@ def fit_in_place(
                 done.fitted(one.point.hypothesis, one, at_least=least)
         alone = [one for one in pool if len(one.names) == 1 and one.names[0] not in best.names]
         for single in alone[:_ALONE] if len(best.names) > 1 else ():
-            bare = replace(best.point.hypothesis, terms=(), opened=())
-            _fit_begun(done, bare.with_term(single.point.hypothesis.terms[0]), best, least)
+            mine = replace(single.point.hypothesis, numbers=best.point.hypothesis.numbers)
+            done.fitted(mine, best, at_least=least)
         for index in range(len(best.names)) if len(best.names) > 1 else ():
             for single in alone[:_ALONE]:
                 fewer = best.point.hypothesis.without(index)
@@ -73,12 +73,6 @@ def fit_in_place(
         fewer = best.point.hypothesis.without(index)
         for rival in [*terms.values()][:_RIVALS] if asked(use) else ():
             done.fitted(fewer.with_term(*rival), best, at_least=least)
-
-
-def _fit_begun(done: Candidates, begins: Hypothesis, best: Candidate, least: float) -> None:
-    """Fit a rival that is judged after some rounds: where its numbers are off it promises little."""
-    begun = done.fitted(begins, best, LOOK)
-    done.fitted(begun.point.hypothesis, begun, at_least=least)
 
 
 def _in_its_place(
@@ -137,12 +131,14 @@ def gains_instead(done: Candidates, best: Candidate) -> dict[str, tuple[str, ...
     if best.names:
         return {}
     hypothesis, found = best.point.hypothesis, {}
+    least = done.score(best) - ALIKE - done.cost_of_a_number(best)
     for name in done.has_moved(best):
         back = hypothesis.with_number(name, done.problem.as_it_came.numbers[name])
         uses = _gains_of(done, back)
         if name == NUMBERS["dead_time"] and len(Scene(done.problem, back).channels) == 1:
             uses = _on_each_channel(done, back, EFFECTS["channel_skew"])
-        tried = [done.fitted(back.with_term(use), best, held=frozenset({name})) for use in uses]
+        held = frozenset({name})
+        tried = [done.fitted(back.with_term(use), best, held=held, at_least=least) for use in uses]
         alike = [
             one for one in tried if one.log_likelihood + one.prior > best.log_likelihood + best.prior - ALIKE
         ]
