@@ -81,6 +81,12 @@ class Candidates:
         least = math.log(candidate.known) + self.least(candidate)
         return self.problem.most_to_gain(candidate.point.errors) > least
 
+    def may_give_way(self, candidate: Candidate) -> bool:
+        """Whether a name could do in the place of numbers that moved: it brings what they cost at most."""
+        least = math.log(candidate.known) + self.cost_of_a_number(candidate)
+        most = self.problem.most_to_gain(candidate.point.errors) - candidate.prior
+        return not candidate.names and most > least - ALIKE
+
     def has_moved(self, candidate: Candidate) -> list[str]:
         """Numbers that are not what the base says at odds of 20 : 1."""
         coordinates = self.problem.coordinates(candidate.point.hypothesis)

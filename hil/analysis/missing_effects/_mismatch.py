@@ -103,6 +103,11 @@ def _off(
     return _away(name, found, done), error / tolerance(name, base, done)
 
 
+def is_off(name: str, hypothesis: Hypothesis, done: Candidates) -> bool:
+    """Whether a number is not what the base says by more than its tolerance."""
+    return _away(name, hypothesis.numbers[name], done) > 1.0
+
+
 def _away(name: str, found: float, done: Candidates) -> float:
     """How far a number is from what the base says, in tolerances."""
     base = done.problem.as_it_came.numbers[name]

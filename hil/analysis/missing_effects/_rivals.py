@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from hil.analysis.missing_effects._candidates import LOOK, Candidates
 from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of
-from hil.analysis.missing_effects._mismatch import tolerance
+from hil.analysis.missing_effects._mismatch import is_off, tolerance
 from hil.analysis.missing_effects._odds import ALIKE, Candidate
 from hil.analysis.missing_effects._screen import NUMBERS, Scene, may_join
 from hil.core.effects import EFFECTS, Effect
@@ -26,7 +26,7 @@ def fit_twins(done: Candidates, best: Candidate, least: float) -> None:
     hypothesis = best.point.hypothesis
     places = [(hypothesis.without(index), use) for index, use in enumerate(hypothesis.terms)]
     twins = [(fewer, twin) for fewer, use in places for twin in _twins_of(done, fewer, use)]
-    if not best.names and done.has_moved(best):
+    if done.may_give_way(best):
         twins = [(hypothesis, gain) for gain in _gains_of(done, hypothesis)]
     for fewer, twin in twins:
         if label_of(twin) not in fewer.names:
@@ -132,7 +132,7 @@ def gains_instead(done: Candidates, best: Candidate) -> dict[str, tuple[str, ...
         return {}
     hypothesis, found = best.point.hypothesis, {}
     least = done.score(best) - ALIKE - done.cost_of_a_number(best)
-    for name in done.has_moved(best):
+    for name in [one for one in done.has_moved(best) if is_off(one, hypothesis, done)]:
         back = hypothesis.with_number(name, done.problem.as_it_came.numbers[name])
         uses = _gains_of(done, back)
         if name == NUMBERS["dead_time"] and len(Scene(done.problem, back).channels) == 1:

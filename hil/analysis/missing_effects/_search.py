@@ -53,9 +53,7 @@ def search(done: Candidates, show: Callable[[str], None]) -> None:
     best = done.fitted(start, None)
     best = _with_better_angles(done, done.fitted(best.point.hypothesis, best))
     weak = False
-    while len(best.names) < _MOST_NAMES and (
-        done.may_gain(best) or (not best.names and done.has_moved(best))
-    ):
+    while len(best.names) < _MOST_NAMES and (done.may_gain(best) or done.may_give_way(best)):
         grown = _grown(done, best, linear if not best.names else (), show)
         if grown is None or not done.gains(best, grown):
             break
@@ -283,7 +281,7 @@ def _beside_the_base(done: Candidates, best: Candidate, least: float) -> list[tu
     back. Of names that promise half of what these brought, the own numbers are fitted first, the base's held:
     where that is right, a play has one minimum. What they promise from there is told.
     """
-    if best.names:
+    if not done.may_give_way(best):
         return []
     base = done.problem.as_it_came
     near = done.at(base, best)
