@@ -81,10 +81,15 @@ class Candidates:
         least = math.log(candidate.known) + self.least(candidate)
         return self.problem.most_to_gain(candidate.point.errors) > least
 
-    def may_give_way(self, candidate: Candidate) -> bool:
-        """Whether a name could do in the place of numbers that moved: it brings what they cost at most."""
+    def may_give_way(self, candidate: Candidate, *, far: bool = False) -> bool:
+        """Whether a name could do in the place of numbers that moved: it brings what they cost at most.
+
+        Args:
+            far: the base says nothing of them.
+        """
         least = math.log(candidate.known) + self.cost_of_a_number(candidate)
-        most = self.problem.most_to_gain(candidate.point.errors) - candidate.prior
+        costs = -replace(self.problem, far=far).log_prior(candidate.point.hypothesis)
+        most = self.problem.most_to_gain(candidate.point.errors) + costs
         return not candidate.names and most > least - ALIKE
 
     def has_moved(self, candidate: Candidate) -> list[str]:

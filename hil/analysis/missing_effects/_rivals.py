@@ -17,16 +17,19 @@ _ALONE = 2  # single names that may take a place near noise
 _RIVALS = 3  # names that may take the place of another
 
 
-def fit_twins(done: Candidates, best: Candidate, least: float) -> None:
+def fit_twins(done: Candidates, best: Candidate, least: float, *, far: bool) -> None:
     """Fit each other gain in the place of a gain, or of numbers that moved, and each other sensor's error.
 
     An axle shows the same by them. Which of them it is only what the base says can tell, and that is far
     behind where numbers have moved.
+
+    Args:
+        far: most numbers are not what the base says.
     """
     hypothesis = best.point.hypothesis
     places = [(hypothesis.without(index), use) for index, use in enumerate(hypothesis.terms)]
     twins = [(fewer, twin) for fewer, use in places for twin in _twins_of(done, fewer, use)]
-    if done.may_give_way(best):
+    if done.may_give_way(best, far=far):
         twins = [(hypothesis, gain) for gain in _gains_of(done, hypothesis)]
     for fewer, twin in twins:
         if label_of(twin) not in fewer.names:

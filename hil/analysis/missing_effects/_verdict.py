@@ -75,7 +75,9 @@ def judged(of: Judged) -> Outcome:
     done = of.done
     likeliest = done.best
     if done.problem.is_noise(likeliest.point.errors):
-        fit_twins(done, likeliest, done.score(likeliest) - ALIKE)
+        at = linearised(done.weighed_as(likeliest, once=True), likeliest.point)
+        far = is_far(numbers_of(at, of.asked), done)
+        fit_twins(done, likeliest, done.score(likeliest) - ALIKE, far=far)
     elif len(likeliest.names) > 1:
         fit_in_place(done, likeliest, is_loss)
     at = linearised(done.weighed_as(done.best, once=True), done.best.point)
