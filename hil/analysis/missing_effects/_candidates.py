@@ -170,16 +170,20 @@ class Candidates:
                 break
             known = goes_on or number + 1 >= LOOK
             if known and self.score(after) + growth < at_least and self.may_reach(after) < at_least:
-                break
+                return self._kept(best)
             before = after
             problem = self.weighed_as(after)
         if rounds >= ROUNDS:
             if hypothesis.kind == "rigid" and "torque_delay" not in held:
                 best = self._within_a_sample(best)
             best = self._with_less(best)
-        key = tuple(sorted(best.names))
-        self.found[key] = max(self.found.get(key, best), best, key=self.score)
-        return best
+        return self._kept(best)
+
+    def _kept(self, fitted: Candidate) -> Candidate:
+        """What was fitted, the best of its names among what was found."""
+        key = tuple(sorted(fitted.names))
+        self.found[key] = max(self.found.get(key, fitted), fitted, key=self.score)
+        return fitted
 
     def led(self, point: Point, held: frozenset[str] = frozenset()) -> Point:
         """A hypothesis fitted where recorded speeds lead it, its errors those of `led_problem`.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hil.analysis.missing_effects._candidates import Candidates
+from hil.analysis.missing_effects._candidates import LOOK, Candidates
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._search import _among_losses, _pruned
 from hil.core.model import EffectUse, Model
@@ -69,4 +69,4 @@ def test_a_fit_without_a_chance_ends_and_one_that_may_come_near_does_not() -> No
     assert done.score(near) > done.score(whole) - 1.0
     done.found.clear()
     hopeless = done.fitted(start, None, at_least=done.score(whole) + 1e4)
-    assert done.score(hopeless) == done.score(done.fitted(start, None, 1))
+    assert done.score(hopeless) == done.score(done.fitted(start, None, LOOK))
