@@ -60,9 +60,13 @@ def hardening(cubic: float) -> Law:
 
 @dataclass(frozen=True)
 class Plant:
-    """`shaft` by twist and its rate, `loss` and `load` by speeds of rotor and wheel; a late shaft torque."""
+    """`shaft` by twist and its rate, `loss` and `load` by speeds of rotor and wheel; a late shaft torque.
+
+    `acts`: the share of the request that the motor makes.
+    """
 
     shaft: Law = linear
+    acts: float = 1.0
     loss: Callable[[float], float] = lambda speed: 0.0
     load: Callable[[float], float] = lambda speed: 0.0
     late_s: float = 0.0
@@ -91,6 +95,9 @@ CASES = {
         Plant(loss=lambda speed: 0.01 * speed, load=lambda speed: 0.15 * speed * abs(speed)),
         {("viscous_drag", "coefficient_nms_rad"): 0.01, ("running_resistance", "aero_nms2_rad2"): 0.15},
     ),
+    "less torque than was asked for": Case(
+        Plant(acts=0.92), {("torque_gain", "gain"): 0.92}, {"shaft_stiffness": 0.8}
+    ),
     "a play and a late torque": Case(
         Plant(dead_zone(0.01), late_s=0.005),
         {("backlash", "half_gap_rad"): 0.01, ("channel_skew", "delay_s"): 0.005},
@@ -109,7 +116,7 @@ def recorded(plant: Plant, torque: np.ndarray, seed: int) -> Recording:
         shaft = plant.shaft(twist, rate)
         return (
             rate,
-            (acting - shaft / n - plant.loss(rotor)) / inertia,
+            (plant.acts * acting - shaft / n - plant.loss(rotor)) / inertia,
             (shaft - plant.load(wheel)) / vehicle,
         )
 
@@ -146,6 +153,19 @@ def chirp() -> np.ndarray:
 def steps() -> np.ndarray:
     levels = np.random.default_rng(7).uniform(-150.0, 150.0, 20)
     return np.repeat(levels, round(0.75 / STEP_S))
+
+
+def every_other(one: Recording) -> Recording:
+    """The same by a logger of half the rate, which takes what there is: no filter before it."""
+    return Recording({name: one[name][::2].copy() for name in one.channels}, Path(f"slow_{one.source}"))
+
+
+@pytest.mark.slow
+def test_two_rates_of_one_axle_hide_nothing() -> None:
+    """1 kHz beside 500 Hz: half of the steps of the torque fall between the samples of the slower one."""
+    fitted = [recorded(Plant(), torque, seed) for seed, torque in enumerate((chirp(), steps()))]
+    found = diagnose(Model("two_inertia", CAR), [fitted[0], every_other(fitted[1])])
+    assert found.verdict == "none", found.effects
 
 
 @pytest.mark.slow
