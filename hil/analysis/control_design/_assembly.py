@@ -110,11 +110,11 @@ def wheel_inertia_of(model: Model, spec: DesignSpec, plant: DesignPlant, notes: 
     if model.kind != "transfer_function":
         raise BadInputError(
             f"a '{model.kind}' model does not separate the inertia of the wheels from that of the vehicle",
-            fix="give --wheel-inertia (wheels and dyno rotors, kg m2)",
+            fix="give --wheel-inertia (wheels and dyno rotors, kg m²)",
         )
     value = chain_of(plant).parameters["wheel_inertia"]
     notes.append(
-        f"the observer's wheel inertia {value:.4g} kg m2 comes from a three-inertia chain fitted to the model"
+        f"the observer's wheel inertia {value:.4g} kg m² comes from a three-inertia chain fitted to the model"
     )
     return value
 

@@ -75,9 +75,11 @@ class Candidates:
         return float(np.nanmax(most / level))
 
     def may_gain(self, candidate: Candidate) -> bool:
-        """Whether one more name could pay, if it left nothing but noise."""
-        if self.problem.is_right(candidate.point.errors):
-            return False
+        """Whether one more name is to be looked for, and could pay."""
+        return self.could_pay(candidate) and not self.problem.is_right(candidate.point.errors)
+
+    def could_pay(self, candidate: Candidate) -> bool:
+        """Whether one more name would pay, if it left nothing but noise."""
         least = math.log(candidate.known) + self.least(candidate)
         return self.problem.most_to_gain(candidate.point.errors) > least
 

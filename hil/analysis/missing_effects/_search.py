@@ -244,7 +244,7 @@ def _suggested(done: Candidates, best: Candidate) -> list[tuple[Hypothesis, floa
     beside = _beside_the_base(done, best, least)
     gained = max((gain for _, gain in beside), default=0.0)
     most = done.problem.most_to_gain(best.point.errors)
-    if not done.may_gain(best) or (beside and gained > HALF * most):
+    if not done.could_pay(best) or (beside and gained > HALF * most):
         return [*found, *beside]  # others promise less from where that is
     promised = promises(done.problem, linearised(done.problem, best.point))
     most = max((one.gain for one in promised), default=0.0)
