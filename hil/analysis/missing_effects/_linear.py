@@ -195,21 +195,23 @@ def _spectra(one: Series) -> tuple[int, Array, ComplexArray, Array]:
     )
 
 
-def structures(problem: Problem) -> list[tuple[Hypothesis, float]]:
-    """Numbers alone by the responses, then with linear effects that they pay for, best first, with the gain.
-
-    Empty where there are no responses. Behind a base whose numbers a descent puts right, effects are left to
-    the fit in time.
-    """
-    responses = responses_of(problem)
-    if responses is None:
-        return []
-    base = problem.as_it_came
+def numbers_alone(responses: Responses) -> Hypothesis:
+    """The base's numbers as the responses have them, without any effect."""
+    base = responses.problem.as_it_came
     near = responses.fitted(base)
-    alone = max((near, _best(responses, _scattered(responses, [base]))), key=responses.posterior)
+    return max((near, _best(responses, _scattered(responses, [base]))), key=responses.posterior)
+
+
+def with_linear_effects(responses: Responses, alone: Hypothesis) -> list[tuple[Hypothesis, float]]:
+    """Numbers alone with each linear effect that the responses pay for, best first, with the gain.
+
+    None where numbers alone leave nothing to explain.
+    """
+    problem = responses.problem
+    base = problem.as_it_came
     found: list[tuple[Hypothesis, float]] = []
     if responses.most() - responses.log_likelihood(alone) < ALIKE:
-        return [(alone, 0.0)]
+        return found
     for effect in EFFECTS.values():
         if effect.law.chain is None or not may_join(effect, alone):
             continue
@@ -224,7 +226,7 @@ def structures(problem: Problem) -> list[tuple[Hypothesis, float]]:
         gain = responses.posterior(best) - responses.posterior(alone) - cost
         if gain > 0.0:
             found.append((best, gain))
-    return [(alone, 0.0), *sorted(found, key=lambda pair: -pair[1])]
+    return sorted(found, key=lambda pair: -pair[1])
 
 
 def _best(responses: Responses, starts: Sequence[Hypothesis]) -> Hypothesis:

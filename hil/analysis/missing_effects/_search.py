@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from hil.analysis.missing_effects._fit import (
     with_better_starts,
 )
 from hil.analysis.missing_effects._hypothesis import Hypothesis, bends, is_loss
-from hil.analysis.missing_effects._linear import structures
+from hil.analysis.missing_effects._linear import numbers_alone, responses_of, with_linear_effects
 from hil.analysis.missing_effects._odds import ALIKE, Candidate, remains
 from hil.analysis.missing_effects._phase import errors_of
 from hil.analysis.missing_effects._problem import Problem
@@ -47,14 +48,14 @@ def search(done: Candidates, show: Callable[[str], None]) -> None:
     """
     show("fitting the numbers alone")
     problem = done.problem
-    (start, _), *linear = _starts(problem)
+    start, linear = _start(problem)
     started = with_better_starts(problem, point_at(problem, start))
     done.problem = problem.weighed_as(started.errors)
     best = done.fitted(start, None)
     best = _with_better_angles(done, done.fitted(best.point.hypothesis, best))
     weak = False
     while len(best.names) < _MOST_NAMES and (done.may_gain(best) or done.may_give_way(best)):
-        grown = _grown(done, best, linear if not best.names else (), show)
+        grown = _grown(done, best, () if best.names else linear(), show)
         if grown is None or not done.gains(best, grown):
             break
         had, has = (problem.mean_square(one.point.errors) for one in (best, grown))
@@ -106,24 +107,24 @@ def _with_whole_orders(done: Candidates, best: Candidate) -> Candidate:
     return best
 
 
-def _starts(problem: Problem) -> list[tuple[Hypothesis, float]]:
-    """Numbers alone by the data, then with linear effects that responses show behind them, with their gain.
+def _start(problem: Problem) -> tuple[Hypothesis, Callable[[], list[tuple[Hypothesis, float]]]]:
+    """Numbers alone by the data; linear effects that responses show behind them, once these are asked for.
 
     Of a chain with shafts the base's own numbers stay where they are the likelier.
     """
     base = problem.as_it_came
-    if problem.functions:
-        return [(base, 0.0)]
-    read = read_numbers(problem.model, problem.series)
-    found = [(read, 0.0)] if read is not None else structures(problem)
+    read = None if problem.functions else read_numbers(problem.model, problem.series)
+    responses = None if problem.functions or read is not None else responses_of(problem)
+    if responses is None:
+        return read or base, list
+    alone = numbers_alone(responses)
 
     def likelihood(one: Hypothesis) -> float:
         point = with_better_starts(problem, point_at(problem, one))
         return float(np.sum(point.powers(problem).log_likelihood(problem.noise)))
 
-    if read is None and (not found or likelihood(base) > likelihood(found[0][0])):
-        found = [(base, 0.0), *found[1:]]
-    return found
+    start = max((alone, base), key=likelihood)
+    return start, partial(with_linear_effects, responses, alone)
 
 
 def _grown(

@@ -7,9 +7,10 @@ from pathlib import Path
 from hil.app.autotune.autotune import autotune
 from hil.app.interrupts import EXIT_CODE, INTERRUPTS
 from hil.app.requests import AutotuneRequest
-from hil.cli.inputs import bench_or_own, named_numbers, request_of
+from hil.cli.inputs import named_numbers, request_of
 from hil.cli.options.controllers import Autotune
 from hil.cli.output import TERMINAL, console, plain_table, print_json
+from hil.cli.run_inputs import bench_or_own
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import share
 from reports import HTML

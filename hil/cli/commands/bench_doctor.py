@@ -5,9 +5,9 @@ from __future__ import annotations
 from rich.console import Console
 from rich.table import Table
 
-from hil.cli.inputs import bench_or_own
 from hil.cli.options.benches import BenchDoctor
 from hil.cli.output import console, plain_table, print_json, progress
+from hil.cli.run_inputs import bench_or_own
 from hil.core.errors.wording import printable
 from hil.engine import StopRequest, load_bench
 from hil.engine.commissioning.doctor import BusFacts, DoctorRequest, Examination, examine_bench

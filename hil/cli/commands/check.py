@@ -10,9 +10,10 @@ from rich.table import Table
 
 from hil.app.check import Checked, check_plan
 from hil.app.requests import CheckRequest
-from hil.cli.inputs import bench_or_own, choices_of, request_of
+from hil.cli.inputs import request_of
 from hil.cli.options.runs import Check
 from hil.cli.output import TERMINAL, console, plain_table, print_criteria, print_json, warn
+from hil.cli.run_inputs import bench_or_own, choices_of
 from hil.core.channels import CHANNELS
 from hil.core.errors.wording import share
 from hil.engine.prediction.forecast import Forecast

@@ -8,9 +8,10 @@ from hil.analysis.target_search import Explanation
 from hil.app.explain import HTML, explain_targets
 from hil.app.interrupts import EXIT_CODE, INTERRUPTS
 from hil.app.requests import ExplainRequest
-from hil.cli.inputs import bench_or_own, named_numbers, request_of
+from hil.cli.inputs import named_numbers, request_of
 from hil.cli.options.models import Explain
 from hil.cli.output import TERMINAL, console, plain_table, print_json
+from hil.cli.run_inputs import bench_or_own
 from reports.target_search import caution
 
 

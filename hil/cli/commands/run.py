@@ -10,7 +10,7 @@ from pathlib import Path
 from hil.app.again import UNPACKED, EarlierRun, compared_in_words, earlier_run
 from hil.app.run import FinishedRun, RunSettings
 from hil.app.series import announce_series, repeated, run_series
-from hil.cli.inputs import all_choices, bench_or_own, named_values
+from hil.cli.inputs import named_values
 from hil.cli.options.runs import Run
 from hil.cli.output import (
     TERMINAL,
@@ -22,6 +22,7 @@ from hil.cli.output import (
     print_json,
     warn,
 )
+from hil.cli.run_inputs import all_choices, bench_or_own
 from hil.cli.run_output import print_in_series, print_series, show_in_browser, times_in_words, timing_in_words
 from hil.cli.streams import complain
 from hil.core.errors import BadInputError

@@ -12,9 +12,10 @@ from hil.app.result_file import Outcome
 from hil.app.tuning.refinement import FirstRun, Refined
 from hil.app.tuning.tune import Reports, tune_controller
 from hil.cli.commands.diagnose import text_of as diagnosis_in_words
-from hil.cli.inputs import bench_or_own, named_numbers, request_of
+from hil.cli.inputs import named_numbers, request_of
 from hil.cli.options.controllers import Tune
 from hil.cli.output import TERMINAL, console, plain_table, print_json
+from hil.cli.run_inputs import bench_or_own
 from hil.cli.streams import complain
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import share

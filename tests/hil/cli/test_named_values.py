@@ -2,7 +2,8 @@
 
 import pytest
 
-from hil.cli.inputs import choices_of, named_numbers, named_values
+from hil.cli.inputs import named_numbers, named_values
+from hil.cli.run_inputs import choices_of
 from hil.core.errors import BadInputError
 
 

@@ -13,7 +13,7 @@ import pytest
 
 from hil.app.feedback import LOGGED
 from hil.app.series import _BADNESS, announce_series
-from hil.cli.inputs import all_choices
+from hil.cli.run_inputs import all_choices
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
 from hil.core.result import CriterionVerdict

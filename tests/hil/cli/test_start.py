@@ -12,7 +12,7 @@ from hil.analysis.control_design import DesignSpec
 from hil.analysis.identification import ORDERS
 from hil.cli import commands
 from hil.cli._app import guarded
-from hil.cli._commands import GROUPS, RENAMED, TOPICS, command_names, options_of
+from hil.cli._commands import GROUPS, RENAMED, TOPICS, WITHOUT_CAN, command_names, options_of
 from hil.core.channels import INPUT
 from tests.hil.cli.test_commands import hil
 
@@ -121,6 +121,13 @@ def test_checking_a_plan_leaves_out_what_it_does_not_use(tmp_path):
     for name in ("asammdf", "pandas", "pyarrow", "matplotlib", "plotly", "typst", "jinja2"):
         assert name not in modules
     assert "numba.np.arraymath" not in modules, "what is loaded needs none of numba's implementations"
+
+
+@pytest.mark.parametrize("name", sorted(WITHOUT_CAN))
+def test_commands_without_a_bus_import_no_python_can(name):
+    code = f"import hil.cli.commands.{name}, sys; print(' '.join(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {"can", "asammdf"} & {*done.stdout.split()}
 
 
 def test_asammdf_can_be_imported_after_python_can(tmp_path):
