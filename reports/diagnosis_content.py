@@ -124,7 +124,7 @@ def first(found: Diagnosis) -> Part:
 
 def parts(found: Diagnosis) -> list[Part]:
     """All sections in order; one without tables, maps, figures and text has nothing to tell."""
-    overlay = shown_overlay(found)
+    overlay, held = shown_overlay(found), ", held out" if found.holdout_after else ""
     first = Part("start", "Identified first", _start_text(found), _if_any(_start(found)))
     return [
         Part("next", "What to do next", "", _if_any(next_steps(found))),
@@ -148,8 +148,8 @@ def parts(found: Diagnosis) -> list[Part]:
         Part(
             "overlays",
             "Measured and simulated",
-            f"What the new model changes most ({overlay.name}): {WINDOW_S:g} s where the old one was worst, "
-            "measured minus simulated there, and the spectra of the errors.",
+            f"What the new model changes most ({overlay.name}{held}): {WINDOW_S:g} s where the old one was "
+            "worst, measured minus simulated there, and the spectra of the errors.",
             figures=overlay_figures(overlay),
         ),
         Part("parameters", "Parameters of the model", "", _if_any(_parameters(found))),
@@ -252,9 +252,8 @@ def _start_text(found: Diagnosis) -> str:
         f"{channel_label(c).text.lower()} {share(g.gap, 2, digits=3)}" for c, g in found.start.gap.items()
     )
     return (
-        "The base model was far from the data as a whole: its numbers were wrong, which is not physics "
-        f"that is missing. Other numbers alone, from {', '.join(found.start.recordings)}, leave a gap "
-        f"of {gaps}."
+        "The base model was far from the data as a whole: most of its numbers were wrong. Other numbers "
+        f"alone, from {', '.join(found.start.recordings)}, leave a gap of {gaps}."
     )
 
 

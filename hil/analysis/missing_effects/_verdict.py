@@ -47,6 +47,10 @@ from hil.plant import rounding_step
 
 Array = npt.NDArray[np.float64]
 
+_SECOND_SENSOR = (
+    "No torque: in an axle that is linear both show the same. Read one of the channels by a second sensor, "
+    "or on another path than the one that is late."
+)
 _LATE = {"actuator_lag": ("sensor_lag", "time_constant_s"), "dead_time": ("channel_skew", "delay_s")}
 _LED = 6  # candidates, whose odds are looked at where speeds lead
 _SHOWN = 5  # alternatives
@@ -206,8 +210,11 @@ def _named(
     label = best.names[index]
     alike = rivals.get(label, ())
     held = _held({label, *alike}, candidates, weights)
-    names = [part for name in (label, *alike) for part in name.split(" + ")]
-    test = " Or: ".join(dict.fromkeys(EFFECTS[name.split("(")[0]].shown_by for name in names))
+    single = [name.split("(")[0] for name in (label, *alike) if " + " not in name]
+    tests = [EFFECTS[name].shown_by for name in single] if len(single) > 1 else []
+    if len(single) <= len(alike):
+        tests.append(_SECOND_SENSOR)
+    test = " Or: ".join(dict.fromkeys(tests))
     return Named(best.point.hypothesis.terms[index], held * share, errors, alike, test if alike else "")
 
 

@@ -60,9 +60,13 @@ def text_of(found: Diagnosis, out: Path) -> str:
             test = f"hil run {out / a.plan}" if a.plan else a.separating_test
             link, them = ("or", "them") if found.effects else ("perhaps", "it from others")
             lines.append(f"  {link} {name} ({chance(a.confidence)}); test to distinguish {them}: {test}")
-    if found.start is not None:
-        lines.append("  the base model was far from the data; identified first:")
-        for parameter, (old, new, error) in found.start.parameters.items():
+    far = found.start.parameters if found.start is not None else {}
+    for title, numbers in (
+        ("the base model was far from the data; identified first", far),
+        ("numbers of the base model corrected", found.parameter_updates),
+    ):
+        lines += [f"  {title}:"] if numbers else []
+        for parameter, (old, new, error) in numbers.items():
             lines.append(f"    {parameter} = {new:.5g} ± {error:.2g} instead of {old:g}")
     lines += ["", f"{'gap, of the signal':<28}{'before':>14}{'after':>14}{'noise':>14}{'after/noise':>13}"]
     for suffix, before, after, angles in (

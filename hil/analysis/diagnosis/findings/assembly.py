@@ -52,8 +52,8 @@ NUMBERS_TRADE = (
 )
 
 NUMBERS_BENT = (
-    "what is missing has no name, and bends the numbers of the model that is given back: they may be off by "
-    "more than their errors say"
+    "something is missing without a name, and bends the numbers of the model that is given back: they may be "
+    "off by more than their errors say"
 )
 
 
@@ -83,6 +83,7 @@ def diagnosis_of(
     doubt = unseen.words(verdict)
     start, updates = _numbers(found, fitted)
     stated = effects if verdict == "named" else ()
+    is_open = verdict == "unknown" or (verdict == "named" and bool(_open(fitted.after)))
     small_too = {name for one in small for name in one.alike}
     return Diagnosis(
         verdict=verdict,
@@ -98,14 +99,14 @@ def diagnosis_of(
         map_before=fitted.map_before,
         map_after=fitted.map_after,
         signature=remaining,
-        overlays=fitted.overlays,
+        overlays=held.overlays or fitted.overlays,
         notes=(
             *notes,
             *_classes([f for f, one in zip(found.effects, named, strict=True) if one in stated]),
             *_steadied(found),
             *([doubt] if doubt else ()),
             *([ASK_FOR_CHAIN] if base.transfer_functions and verdict == "unknown" else ()),
-            *([NUMBERS_BENT] if verdict == "unknown" and (start or updates) else ()),
+            *([NUMBERS_BENT] if is_open and (start or updates or stated) else ()),
         ),
         seconds=found.seconds,
         unfinished=_time_is_up(asked) if found.unfinished == OUT_OF_TIME else found.unfinished,

@@ -37,10 +37,11 @@ def test_a_base_that_runs_away_gets_the_name_of_what_is_missing(found: Diagnosis
 
 
 def test_the_model_given_back_leaves_the_gap_that_is_stated(found: Diagnosis) -> None:
+    """On the recording held out, which is the one that is drawn."""
     overlay = found.overlays[0]
     error = overlay.measured[:, 0] - overlay.after[:, 0]
     gap = np.sqrt(np.mean(error**2)) / np.std(overlay.measured[:, 0])
-    assert gap == pytest.approx(found.gap_after["motor_speed_rad_s"].gap, rel=1e-6)
+    assert gap == pytest.approx(found.holdout_after["motor_speed_rad_s"].gap, rel=1e-6)
     assert found.gap_after["motor_speed_rad_s"].gap < 0.1 * found.gap_before["motor_speed_rad_s"].gap
 
 
