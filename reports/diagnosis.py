@@ -38,11 +38,18 @@ def _page(found: Diagnosis, title: str, origin: Origin | None) -> Page:
         headline=headline(found),
         tone=_tone(found),
         lead=lead(found),
-        notes=tuple(map(with_titles, found.notes)),
+        notes=tuple(map(_sentence, found.notes)),
         parts=(*parts(found), *((origin.part,) if origin else ())),
         mark=origin.mark if origin else "",
         first=first(found),
     )
+
+
+def _sentence(note: str) -> str:
+    """A note as it stands in a text; a recording's name, which comes before a colon, stays as it is."""
+    text = with_titles(note)
+    begins = text if text.partition(" ")[0].endswith(":") else text[:1].upper() + text[1:]
+    return begins if begins.endswith((".", "?")) else f"{begins}."
 
 
 def _tone(found: Diagnosis) -> _Tone:

@@ -35,7 +35,7 @@ from reports.diagnosis_names import (
     names_of,
 )
 from reports.diagnosis_steps import next_steps
-from reports.labels import Label, channel_label, parameter_title
+from reports.labels import Label, channel_label, parameter_title, with_titles
 from reports.parts import Cell, Map, Part, Table, paired
 
 Array = npt.NDArray[np.float64]
@@ -106,7 +106,7 @@ def _bars(found: Diagnosis) -> GapBars:
         )
         for channel, gap in after.items()
     )
-    return GapBars("gap-bars", Label("Measured minus simulated"), rows, f"On {where}.", wide=False)
+    return GapBars("gap-bars", Label("Measured minus simulated"), rows, f"On {where}.")
 
 
 def _over_noise(gaps: Mapping[str, ChannelGap]) -> dict[str, float]:
@@ -208,7 +208,7 @@ def _what_stays(found: Diagnosis) -> str:
         names = ", ".join(channel_label(c).text.lower() for c in found.open_channels)
         words += f" What stays is more than noise: {names}."
     if found.worse:
-        words += f" Made worse: {'; '.join(found.worse[:MOST_WORSE])}."
+        words += f" Made worse: {'; '.join(map(with_titles, found.worse[:MOST_WORSE]))}."
     return words
 
 
