@@ -25,8 +25,19 @@ def effects_text(found: Diagnosis) -> str:
 
 def names_of(effect: NamedEffect) -> str:
     """An effect's title, and those of the names that the data cannot tell from it."""
-    others = (" and ".join(_titled(part) for part in name.split(" + ")) for name in effect.alike)
-    return " or ".join((_titled(EFFECTS[effect.use.id].label(effect.use.values)), *others))
+    return " or ".join(
+        (_titled(EFFECTS[effect.use.id].label(effect.use.values)), *map(_together, effect.alike))
+    )
+
+
+def _together(names: str) -> str:
+    """One name or several that go together; of one effect by all of its channels."""
+    labels_ = names.split(" + ")
+    ids = {label.partition("(")[0] for label in labels_}
+    if len(labels_) == 1 or len(ids) > 1:
+        return " and ".join(map(_titled, labels_))
+    *first, last = (with_titles(label.partition("(")[2].rstrip(")")) for label in labels_)
+    return f"the same {EFFECTS[ids.pop()].title.lower()} of {', '.join(first)} and {last}"
 
 
 def _titled(label: str) -> str:

@@ -281,3 +281,12 @@ def test_names_that_the_data_cannot_tell_apart_stand_together_and_share_the_conf
     assert found.as_json()["something_else"] == pytest.approx(0.0)
     page: Any = html.fromstring(diagnosis_html(doubt, "axle.toml"))
     assert "Named: running resistance or sensor lag of motor speed" in " ".join(page.text_content().split())
+
+
+def test_errors_of_all_sensors_are_said_in_one(found: Diagnosis) -> None:
+    use = EffectUse("actuator_lag", {"time_constant_s": 0.006})
+    late = "sensor_lag(motor_speed_rad_s) + sensor_lag(wheel_speed_rad_s)"
+    named = dataclasses.replace(found.effects[0], use=use, confidence=0.9, alike=(late,))
+    page: Any = html.fromstring(diagnosis_html(dataclasses.replace(found, effects=(named,)), "axle.toml"))
+    words = " ".join(page.text_content().split())
+    assert "Named: actuator lag or the same sensor lag of motor speed and wheel speed" in words
