@@ -136,10 +136,13 @@ def gains_instead(done: Candidates, best: Candidate) -> dict[str, tuple[str, ...
     hypothesis, found = best.point.hypothesis, {}
     least = done.score(best) - ALIKE - done.cost_of_a_number(best)
     for name in [one for one in done.has_moved(best) if is_off(one, hypothesis, done)]:
-        back = hypothesis.with_number(name, done.problem.as_it_came.numbers[name])
+        base = done.problem.as_it_came.numbers[name]
+        back = hypothesis.with_number(name, base)
         uses = _gains_of(done, back)
         if name == NUMBERS["dead_time"] and len(Scene(done.problem, back).channels) == 1:
-            uses = _on_each_channel(done, back, EFFECTS["channel_skew"])
+            late_s = hypothesis.numbers[name] - base
+            late = _on_each_channel(done, back, EFFECTS["channel_skew"])
+            uses = [EffectUse(use.id, use.values | {"delay_s": late_s}) for use in late]
         held = frozenset({name})
         tried = [done.fitted(back.with_term(use), best, held=held, at_least=least) for use in uses]
         alike = [

@@ -43,7 +43,7 @@ def examine(
     noise = proven_noise([*series, *beside], {})
     seen = [_as_recorded(one) for one in series]
     refuse_held(model, seen, noise, [_as_recorded(one) for one in beside])
-    notes = _refuse_motionless(model, seen, noise)
+    notes = _refuse_motionless(model, seen, noise, held_out=bool(beside))
     files = list(dict.fromkeys(one.source for one in seen))
     _refuse_each((file, mistaken(model, [s for s in seen if s.source == file], noise)) for file in files)
     if len(files) > 1 and (together := mistaken(model, seen, noise)) is not None:
@@ -73,7 +73,7 @@ def _kind(error: BadInputError) -> str:
     return error.what.split(":")[0]
 
 
-def _refuse_motionless(model: Model, series: Sequence[Series], noise: Array) -> list[str]:
+def _refuse_motionless(model: Model, series: Sequence[Series], noise: Array, *, held_out: bool) -> list[str]:
     """A note for each recording that tells nothing; without any that does there is nothing to explain."""
     driven = is_regulated(model)  # by what is not recorded
     moved = [any(moves(one, column, noise) for column in range(len(OUTPUTS))) for one in series]
@@ -92,10 +92,13 @@ def _refuse_motionless(model: Model, series: Sequence[Series], noise: Array) -> 
             )
     if not any(moved):
         names = [name for column, name in enumerate(OUTPUTS) if any(one.has[column] for one in series)]
+        no_use, remedy = "nothing to diagnose", "check that the channel is connected, and"
+        if held_out:
+            no_use, remedy = "nothing to check a model by", "leave them out of the ones held out, or"
         raise BadInputError(
-            f"no recording shows motion, so there is nothing to diagnose: noise alone in {', '.join(names)}",
+            f"no recording shows motion, so there is {no_use}: noise alone in {', '.join(names)}",
             where=", ".join(dict.fromkeys(one.source for one in series)),
-            fix="check that the channel is connected, and record a chirp or steps that move the axle",
+            fix=f"{remedy} record a chirp or steps that move the axle",
         )
     still = [one.name for one, moving in zip(series, moved, strict=True) if not moving]
     return [f"{name}: no motion, not used" for name in still]

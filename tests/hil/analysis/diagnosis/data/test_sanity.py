@@ -25,6 +25,15 @@ def test_nothing_is_examined_where_nothing_is_given() -> None:
     assert examine(MODEL, []) == ([], [])
 
 
+def test_recordings_held_out_that_show_no_motion_are_to_be_left_out() -> None:
+    one = recorded(seconds=8.0)
+    fitted, _ = examine(MODEL, [one])
+    still = {name: one[name] if name == TIME else np.zeros_like(one[name]) for name in one.channels}
+    with pytest.raises(BadInputError, match="nothing to check a model by") as refused:
+        examine(MODEL, [dataclasses.replace(one, channels=still)], fitted)
+    assert "leave them out" in str(refused.value.fix)
+
+
 def test_an_inverted_channel_is_named() -> None:
     one = recorded(seconds=8.0)
     turned = dataclasses.replace(one, channels={**one.channels, "shaft_torque_nm": -one["shaft_torque_nm"]})
