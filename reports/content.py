@@ -217,8 +217,7 @@ def _why_not_judged(result: RunResult) -> str:
 
 def _as_sentences(text: str) -> list[str]:
     """Lines of a message, each with a capital and a full stop."""
-    lines = [line.strip() for line in text.splitlines() if line.strip()]
-    return [line[0].upper() + line[1:] + ("" if line[-1] in ".!?" else ".") for line in lines]
+    return [labels.as_sentence(line.strip()) for line in text.splitlines() if line.strip()]
 
 
 def _warnings(

@@ -9,7 +9,7 @@ from typing import Literal
 
 from hil.analysis.diagnosis import Diagnosis
 from reports.diagnosis_content import first, headline, lead, parts
-from reports.labels import with_titles
+from reports.labels import as_sentence, with_titles
 from reports.origin import Origin
 from reports.parts import Page, documents, page_html, page_pdf
 
@@ -47,9 +47,8 @@ def _page(found: Diagnosis, title: str, origin: Origin | None) -> Page:
 
 def _sentence(note: str) -> str:
     """A note as it stands in a text; a recording's name, which comes before a colon, stays as it is."""
-    text = with_titles(note)
-    begins = text if text.partition(" ")[0].endswith(":") else text[:1].upper() + text[1:]
-    return begins if begins.endswith((".", "?")) else f"{begins}."
+    text = as_sentence(with_titles(note))
+    return note[:1] + text[1:] if note.partition(" ")[0].endswith(":") else text
 
 
 def _tone(found: Diagnosis) -> _Tone:

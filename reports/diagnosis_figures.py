@@ -59,7 +59,7 @@ def _curve_figure(number: int, curve: Curve) -> Figure:
     if curve.law_nm is not None:
         law = (Trace(Label("its law"), curve.at, curve.law_nm, "gain", width=1.6),)
     return Figure(
-        f"curve-{number}", Label(f"{title}: torque over {over}"), f"{over[:1].upper()}{over[1:]}", unit,
+        f"curve-{number}", Label(f"{title}: torque over {over}"), labels.capitalised(over), unit,
         Label("torque"), "N m", (*law, measured), caption=_MEASURED if over != "twist" else _RECORDED,
     )  # fmt: skip
 
@@ -133,7 +133,6 @@ def _in_frequency(o: Overlay, column: int, channel: str) -> Figure:
 
 
 _LEFT_MM, _RIGHT_MM, _BOTTOM_MM, _TOP_MM = 30.0, 14.0, 8.5, 5.0
-_NARROW_LEFT_MM = 18.0
 _ROW_MM, _BAR = 9.0, 0.36
 _ROLES = {"before": "phase", "after": "gain"}
 
@@ -167,9 +166,8 @@ class GapBars:
         return f"{self.title.plain()}. " + "; ".join(lines) + "."
 
     def as_svg(self) -> bytes:
-        """The picture in the house style for paper, a whole text line wide or half of one."""
-        width = style.PAPER_WIDE_MM[0] if self.wide else style.PAPER_WIDTH_MM
-        left = _LEFT_MM if self.wide else _NARROW_LEFT_MM
+        """The picture in the house style for paper, a whole text line wide."""
+        width, left = style.PAPER_WIDE_MM[0], _LEFT_MM
         height = _BOTTOM_MM + _TOP_MM + _ROW_MM * max(1, len(self.rows))
         with svg_canvas(width, height) as picture:
             canvas = picture.canvas
@@ -183,7 +181,7 @@ class GapBars:
             self._draw(axes)
             canvas.legend(
                 loc="upper left",
-                bbox_to_anchor=(left / width if self.wide else 0.0, 1.0),
+                bbox_to_anchor=(left / width, 1.0),
                 ncols=3,
                 borderaxespad=0.2,
                 borderpad=0.1,

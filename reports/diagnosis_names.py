@@ -9,7 +9,7 @@ from hil.core.channels import CHANNELS
 from hil.core.effects import EFFECTS
 from hil.core.model import parameter_unit
 from reports import labels
-from reports.labels import channel_label, parameter_title, with_titles
+from reports.labels import capitalised, channel_label, parameter_title, with_titles
 from reports.parts import Table
 
 
@@ -19,7 +19,7 @@ def effects_text(found: Diagnosis) -> str:
         return "None."
     effects = [EFFECTS[id_] for id_ in dict.fromkeys(e.use.id for e in found.effects)]
     laws = [f"{e.title}: {e.summary} Known by: {_lowered(e.signature)}" for e in effects]
-    seen = [f"{_upper(names_of(e))} is seen in {_place(e)}." for e in found.effects]
+    seen = [f"{capitalised(names_of(e))} is seen in {_place(e)}." for e in found.effects]
     return " ".join((*laws, *seen))
 
 
@@ -32,21 +32,23 @@ def names_of(effect: NamedEffect) -> str:
 
 def _together(names: str) -> str:
     """One name or several that go together; of one effect by all of its channels."""
-    labels_ = names.split(" + ")
-    ids = {label.partition("(")[0] for label in labels_}
-    if len(labels_) == 1 or len(ids) > 1:
-        return " and ".join(map(_titled, labels_))
-    *first, last = (with_titles(label.partition("(")[2].rstrip(")")) for label in labels_)
-    return f"the same {EFFECTS[ids.pop()].title.lower()} of {', '.join(first)} and {last}"
+    titles, about = zip(*map(_in_words, names.split(" + ")), strict=True)
+    if len(about) == 1 or len({*titles}) > 1:
+        return " and ".join(map(_titled, names.split(" + ")))
+    return f"the same {titles[0]} of {', '.join(about[:-1])} and {about[-1]}"
 
 
 def _titled(label: str) -> str:
     """`sensor_lag(motor_speed_rad_s)` or `parameter_mismatch(gear_ratio)` in words."""
+    title, about = _in_words(label)
+    return f"{title} of {about}" if about else title
+
+
+def _in_words(label: str) -> tuple[str, str]:
+    """An effect's title, and the channel or parameter that it speaks of, if any."""
     id_, _, about = label.rstrip(")").partition("(")
-    title = EFFECTS[id_].title.lower()
-    if not about:
-        return title
-    return f"{title} of {with_titles(about) if about in CHANNELS else parameter_title(about)}"
+    named = with_titles(about) if about in CHANNELS else parameter_title(about) if about else ""
+    return EFFECTS[id_].title.lower(), named
 
 
 def _lowered(sentence: str) -> str:
@@ -65,7 +67,7 @@ def effects_table(found: Diagnosis) -> Table:
             error = e.standard_error.get(name)
             rows.append(
                 (
-                    _upper(names_of(e)) if index == 0 else "",
+                    capitalised(names_of(e)) if index == 0 else "",
                     parameter_title(name),
                     labels.quantity(value, units.get(name, "")),
                     labels.number(error, significant=2) if error is not None else "",
@@ -73,10 +75,6 @@ def effects_table(found: Diagnosis) -> Table:
                 )
             )
     return Table(("effect", "parameter", "value", "standard error", "confidence"), tuple(rows), 2)
-
-
-def _upper(sentence: str) -> str:
-    return f"{sentence[:1].upper()}{sentence[1:]}"
 
 
 def _place(effect: NamedEffect) -> str:

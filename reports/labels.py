@@ -85,7 +85,7 @@ def criterion_title(id_: str) -> str:
     if not metric:
         return id_
     words = metric.replace("_", " ").replace(".", ", ")
-    return f"{words[:1].upper()}{words[1:]}, {segment}" + (f" below {rival}" if rival else "")
+    return f"{capitalised(words)}, {segment}" + (f" below {rival}" if rival else "")
 
 
 #: Units at the end of names, a torque's with what it is over.
@@ -97,6 +97,16 @@ def parameter_title(name: str) -> str:
     id_, _, number = name.rpartition(".")
     words = _UNIT.sub("", number).replace("_", " ")
     return f"{id_.replace('.', ', ').replace('_', ' ')}, {words}".removeprefix(", ")
+
+
+def capitalised(text: str) -> str:
+    """With a capital first, all else as it is."""
+    return text[:1].upper() + text[1:]
+
+
+def as_sentence(text: str) -> str:
+    """With a capital and a full stop."""
+    return capitalised(text) + ("" if text.endswith((".", "!", "?")) else ".")
 
 
 def with_titles(text: str) -> str:

@@ -270,8 +270,7 @@ def _flat(values: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]:
 
 
 def _words(key: str) -> str:
-    text = key.replace("_", " ")
-    return text[:1].upper() + text[1:]
+    return labels.capitalised(key.replace("_", " "))
 
 
 def _date(text: str) -> datetime.date | None:

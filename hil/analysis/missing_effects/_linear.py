@@ -209,9 +209,9 @@ def with_linear_effects(responses: Responses, alone: Hypothesis) -> list[tuple[H
     """
     problem = responses.problem
     base = problem.as_it_came
-    found: list[tuple[Hypothesis, float]] = []
     if responses.most() - responses.log_likelihood(alone) < ALIKE:
-        return found
+        return []
+    found: list[tuple[Hypothesis, float]] = []
     for effect in EFFECTS.values():
         if effect.law.chain is None or not may_join(effect, alone):
             continue

@@ -78,13 +78,14 @@ def judged(of: Judged) -> Outcome:
     """The outcome of a search."""
     done = of.done
     likeliest = done.best
+    at = linearised(done.weighed_as(likeliest, once=True), likeliest.point)
     if done.problem.is_noise(likeliest.point.errors):
-        at = linearised(done.weighed_as(likeliest, once=True), likeliest.point)
         far = is_far(numbers_of(at, of.asked), done)
         fit_twins(done, likeliest, done.score(likeliest) - ALIKE, far=far)
     elif len(likeliest.names) > 1:
         fit_in_place(done, likeliest, is_loss)
-    at = linearised(done.weighed_as(done.best, once=True), done.best.point)
+    if done.best is not likeliest:
+        at = linearised(done.weighed_as(done.best, once=True), done.best.point)
     may_be_off = _may_be_off(of, at)
     as_the_base = as_the_base_has(done, done.best) if may_be_off else frozenset[str]()
     gains = gains_instead(done, done.best) if may_be_off else {}
@@ -212,7 +213,7 @@ def _named(
     held = _held({label, *alike}, candidates, weights)
     single = [name.split("(")[0] for name in (label, *alike) if " + " not in name]
     tests = [EFFECTS[name].shown_by for name in single] if len(single) > 1 else []
-    if len(single) <= len(alike):
+    if any(" + " in name for name in alike):
         tests.append(_SECOND_SENSOR)
     test = " Or: ".join(dict.fromkeys(tests))
     return Named(best.point.hypothesis.terms[index], held * share, errors, alike, test if alike else "")

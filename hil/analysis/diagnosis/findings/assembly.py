@@ -78,12 +78,13 @@ def diagnosis_of(
     follows = any(EFFECTS[use.id].law.follows for use in found.model.effects)
     walks = follows and not any(one.of_angle.any() for one in held.traces)
     event = furthest(held.traces, found.noise, held.after_samples)
-    unseen = HeldOut(held.before, held.after, event, walks, fitted_too=bool(_open(fitted.after)))
+    open_channels = _open(fitted.after)
+    unseen = HeldOut(held.before, held.after, event, walks, fitted_too=bool(open_channels))
     verdict, remaining = _verdict(found, effects, unseen, fitted)
     doubt = unseen.words(verdict)
     start, updates = _numbers(found, fitted)
     stated = effects if verdict == "named" else ()
-    is_open = verdict == "unknown" or (verdict == "named" and bool(_open(fitted.after)))
+    is_bent = bool(stated and open_channels) or (verdict == "unknown" and bool(start or updates))
     small_too = {name for one in small for name in one.alike}
     return Diagnosis(
         verdict=verdict,
@@ -106,13 +107,13 @@ def diagnosis_of(
             *_steadied(found),
             *([doubt] if doubt else ()),
             *([ASK_FOR_CHAIN] if base.transfer_functions and verdict == "unknown" else ()),
-            *([NUMBERS_BENT] if is_open and (start or updates or stated) else ()),
+            *([NUMBERS_BENT] if is_bent else ()),
         ),
         seconds=found.seconds,
         unfinished=_time_is_up(asked) if found.unfinished == OUT_OF_TIME else found.unfinished,
         consequences=consequences(base, found.model, found.as_likely),
         start=start,
-        open_channels=_open(fitted.after),
+        open_channels=open_channels,
         held_out_open=unseen.open(verdict),
         worse=tuple(made_worse(fitted.map_before, fitted.map_after)),
         curves=_curves(found, stated),
